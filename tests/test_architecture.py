@@ -248,3 +248,56 @@ def test_the_engine_is_tested_without_the_program():
                 if name in support and support[name] not in seen:
                     waiting.append(support[name])
     assert of_the_program == []
+
+
+# Methods that change a list, set or dictionary.
+MUTATING = {
+    *("add", "append", "clear", "difference_update", "discard", "extend", "insert"),
+    *("intersection_update", "pop", "popitem", "remove", "setdefault", "update"),
+}
+OWNERS = {"Project", "Session"}  # they hold the parts
+
+
+def state_parts() -> Iterator[tuple[str, ast.ClassDef]]:
+    """Yield the classes of the parts of a session and of a project, with their modules."""
+    for name in sorted(FILES):
+        for node in parsed(name).body:
+            if isinstance(node, ast.ClassDef) and "Revised" in map(ast.unparse, node.bases):
+                yield name, node
+
+
+def written_attributes(name: str) -> Iterator[tuple[str, str]]:
+    """Yield the attributes that a module sets, deletes or mutates on an object, with the code.
+
+    An object may write its own attributes, also if a part has one of the same name.
+    """
+    for node in ast.walk(parsed(name)):
+        target: ast.AST = node
+        if isinstance(node, ast.Subscript) and not isinstance(node.ctx, ast.Load):
+            target = node.value
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("setattr"):
+            for each in ast.walk(node):
+                if isinstance(each, ast.Constant) and isinstance(each.value, str):
+                    yield each.value, ast.unparse(node)
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            target = node.func.value if node.func.attr in MUTATING else node
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load):
+            continue
+        if isinstance(target, ast.Attribute) and ast.unparse(target.value) != "self":
+            yield target.attr, ast.unparse(node)
+
+
+def test_attributes_of_a_part_are_written_in_its_module():
+    homes: dict[str, set[str]] = {}
+    for name, part in state_parts():
+        for field in part.body:
+            if isinstance(field, ast.AnnAssign) and part.name not in OWNERS:
+                homes.setdefault(ast.unparse(field.target), set()).add(name)
+    others = [
+        (name, written)
+        for name in sorted(FILES)
+        for attribute, written in written_attributes(name)
+        if name not in homes.get(attribute, {name})
+    ]
+    assert homes
+    assert others == []

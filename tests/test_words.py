@@ -26,7 +26,6 @@ REPLACED_LONG = {
     "app/document/model.py",
     "app/editor/actions/frame_update.py",
     "app/editor/project.py",
-    "app/editor/session.py",
     "app/editor/work/pull.py",
     "app/motion/inbetween_cache.py",
     "app/motion/inbetweens/pose_sampler.py",

@@ -18,6 +18,7 @@ from app.cli.process import (
 )
 from app.editor import Jobs, Session, error_reports
 from app.editor.actions.project_files import autosaving, files, recovery
+from app.editor.parts.dialogs import DialogState
 from app.errors import EXPECTED_ERRORS
 from app.render import Renderer
 from app.render.gpu.context import window_context
@@ -59,7 +60,7 @@ def run_window(file: Path | None) -> int:
         jobs=Jobs(),
         folder=folder,
         preferences=load_preferences(folder),
-        system_dialogs=find_system_dialogs() is not None,
+        dialogs=DialogState(uses_system=find_system_dialogs() is not None),
     )
     _make(folder, session)
     autosaving.remove_temporary_files(session)
@@ -141,13 +142,15 @@ def _make(folder: Path, session: Session) -> None:
     try:
         make_settings_folder(folder)
     except EXPECTED_ERRORS as error:
-        session.show_notice(
+        session.notices.show(
             _("Unsaved work and settings cannot be backed up: {error}. Save often.").format(
                 error=message_of(error)
             ),
             tone="error",
         )
-        session.reported_failures |= {autosaving.AUTOSAVING.complaint, autosaving.WRITING.complaint}
+        session.diagnostics.note_failure(
+            autosaving.AUTOSAVING.complaint, autosaving.WRITING.complaint
+        )
 
 
 def _keep_at_lost_display(session: Session) -> None:

@@ -11,7 +11,8 @@ from app.editor import (
     pending_changes as pending_changes,
 )
 from app.editor.action import Action as Action, do as do
-from app.editor.dialogs import (
+from app.editor.error_reports import as_sentence as as_sentence
+from app.editor.parts.dialogs import (
     Dialog as Dialog,
     FileDialog as FileDialog,
     ProblemReport as ProblemReport,
@@ -20,7 +21,18 @@ from app.editor.dialogs import (
     RecoveryDialog as RecoveryDialog,
     ShortcutSheet as ShortcutSheet,
 )
-from app.editor.error_reports import as_sentence as as_sentence
+from app.editor.parts.notices import Toast as Toast
+from app.editor.parts.timeline import (
+    CycleDrag as CycleDrag,
+    Edge as Edge,
+    EdgeDrag as EdgeDrag,
+    KeyBox as KeyBox,
+    KeyDrag as KeyDrag,
+    ScrubDrag as ScrubDrag,
+    TimeDrag as TimeDrag,
+    TimeGesture as TimeGesture,
+    TimeRangeView as TimeRangeView,
+)
 from app.editor.project import Project as Project
 from app.editor.session import (
     AttachOverlay as AttachOverlay,
@@ -40,21 +52,9 @@ from app.editor.session import (
     Session as Session,
     StrokeOverlay as StrokeOverlay,
     Tint as Tint,
-    Toast as Toast,
     TutorialStage as TutorialStage,
     TutorialState as TutorialState,
     with_project as with_project,
-)
-from app.editor.timeline_view import (
-    CycleDrag as CycleDrag,
-    Edge as Edge,
-    EdgeDrag as EdgeDrag,
-    KeyBox as KeyBox,
-    KeyDrag as KeyDrag,
-    ScrubDrag as ScrubDrag,
-    TimeDrag as TimeDrag,
-    TimeGesture as TimeGesture,
-    TimeRangeView as TimeRangeView,
 )
 from app.editor.work.jobs import JobKind as JobKind, Jobs as Jobs
 from app.editor.work.layer_runtime import (

@@ -6,8 +6,8 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from app.editor.action import Action, do
-from app.editor.dialogs import FileDialog, ProblemReport, RecoveryDialog
+from app.editor.action import do
+from app.editor.parts.dialogs import FileDialog, ProblemReport, RecoveryDialog
 from app.editor.session import Session
 from app.editor.work.jobs import Job, JobKind
 from app.errors import EXPECTED_ERRORS
@@ -25,8 +25,6 @@ from app.texts import _, message_of
 from engine.errors import Message
 
 Result = TypeVar("Result")
-MOST_NOTED = 40  # most logged actions
-TIMES = " × "  # between an action's name and its number of repetitions
 
 
 def as_sentence(said: Exception | Message | str) -> str:
@@ -50,21 +48,15 @@ def run_job(
 
 
 def report_first_failure(session: Session, what: str, error: Exception) -> None:
-    """Report the failure of a repeated attempt once, until `clear_reported_failure`."""
-    if what not in session.reported_failures:
-        session.reported_failures.add(what)
+    """Report the failure of a repeated attempt once, until the attempt succeeds."""
+    if session.diagnostics.note_failure(what):
         report_failure(session, what, error)
-
-
-def clear_reported_failure(session: Session, what: str) -> None:
-    """Note that a repeated attempt has succeeded."""
-    session.reported_failures.discard(what)
 
 
 def report_failure(session: Session, what: str, error: Exception) -> None:
     """Show which work failed and why; an unexpected error comes with details to copy."""
     if isinstance(error, EXPECTED_ERRORS):
-        session.show_notice(as_sentence(f"{what}: {message_of(error)}"), tone="error")
+        session.notices.show(as_sentence(f"{what}: {message_of(error)}"), tone="error")
     else:
         report_unexpected_error(session, f"{what}.", error)
 
@@ -73,12 +65,13 @@ def report_unexpected_error(
     session: Session, text: str, error: Exception, *, topic: str = ""
 ) -> None:
     """Report a fault of the program, with details to copy and a report to save."""
-    session.last_error_trace = error_trace(session, error)
-    session.show_notice(
+    trace = error_trace(session, error)
+    session.diagnostics.note_error(trace)
+    session.notices.show(
         text,
         tone="error",
         topic=topic,
-        details=session.last_error_trace,
+        details=trace,
         label=_("Report…"),
         action=do(show_problem_report),
     )
@@ -89,26 +82,17 @@ def error_trace(session: Session, error: Exception) -> str:
     return format_trace(error, _hidden(session))
 
 
-def log_action(session: Session, action: Action) -> None:
-    """Log an action's name without its arguments."""
-    last, _, times = (session.logged_actions or [""])[-1].partition(TIMES)
-    if action.name == last:
-        session.logged_actions[-1] = f"{last}{TIMES}{int(times or 1) + 1}"
-    else:
-        session.logged_actions.append(action.name)
-        del session.logged_actions[:-MOST_NOTED]
-
-
 def problem_report_text(session: Session) -> str:
     """Return the text of a report about the session and its last error."""
+    known = session.diagnostics
     return format_problem_report(
-        graphics=session.graphics, actions=session.logged_actions, trace=session.last_error_trace
+        graphics=known.graphics, actions=known.logged_actions, trace=known.last_error_trace
     )
 
 
 def keep_crash_report(session: Session, error: Exception) -> str:
     """Write a report of a fatal error beside unsaved work, and return it."""
-    session.last_error_trace = error_trace(session, error)
+    session.diagnostics.note_error(error_trace(session, error))
     text = problem_report_text(session)
     write_report(session.folder, text)
     return text
@@ -123,24 +107,23 @@ def keep_fault_report(session: Session) -> None:
 
 
 def show_problem_report(session: Session) -> None:
-    session.dialog = ProblemReport(
-        text=problem_report_text(session), is_kept=False, behind=_behind(session)
-    )
+    text = problem_report_text(session)
+    session.dialogs.show(ProblemReport(text=text, is_kept=False, behind=_behind(session)))
 
 
 def show_kept_or_new_report(session: Session) -> None:
     """Show the kept report of an earlier crash, or else a report of this session."""
     text = load_report(session.folder)
     if text:
-        session.dialog = ProblemReport(text=text, is_kept=True, behind=_behind(session))
+        session.dialogs.show(ProblemReport(text=text, is_kept=True, behind=_behind(session)))
     else:
         show_problem_report(session)
 
 
 def offer_kept_report(session: Session) -> None:
     """Offer the kept report of an earlier crash once, unless a dialog is open."""
-    if session.dialog is None and mark_report_seen(session.folder):
-        session.show_notice(
+    if session.dialogs.current is None and mark_report_seen(session.folder):
+        session.notices.show(
             _(
                 "Lissom quit unexpectedly last time. A report is saved on this computer. "
                 "Nothing was sent."
@@ -152,17 +135,19 @@ def offer_kept_report(session: Session) -> None:
 
 def edit_report_text(session: Session, report: ProblemReport, text: str) -> None:
     """Set the text of the report after an edit by the person."""
-    session.dialog = replace(report, text=text)
+    session.dialogs.show(replace(report, text=text))
 
 
 def ask_report_path(session: Session, report: ProblemReport) -> None:
-    session.dialog = FileDialog(
-        title=_("Save the report"),
-        folder=session.usual_folder,
-        name=_("Lissom report") + ".txt",
-        suffixes=(".txt",),
-        writes=True,
-        chosen=lambda path: do(save_report, report, path),
+    session.dialogs.show(
+        FileDialog(
+            title=_("Save the report"),
+            folder=session.usual_folder,
+            name=_("Lissom report") + ".txt",
+            suffixes=(".txt",),
+            writes=True,
+            chosen=lambda path: do(save_report, report, path),
+        )
     )
 
 
@@ -172,19 +157,19 @@ def save_report(session: Session, report: ProblemReport, path: Path) -> None:
     write_atomically(path, lambda file: file.write(report.text.encode()))
     if report.is_kept:
         remove_report(session.folder)
-    session.dialog = report.behind
-    session.show_notice(_("Saved {name}.").format(name=path.name), tone="good")
+    session.dialogs.show(report.behind)
+    session.notices.show(_("Saved {name}.").format(name=path.name), tone="good")
 
 
 def discard_report(session: Session, report: ProblemReport) -> None:
     remove_report(session.folder)
-    session.dialog = report.behind
-    session.show_notice(_("The report was discarded."))
+    session.dialogs.show(report.behind)
+    session.notices.show(_("The report was discarded."))
 
 
 def _behind(session: Session) -> RecoveryDialog | None:
     """Return the dialog that follows a report."""
-    dialog = session.dialog
+    dialog = session.dialogs.current
     if isinstance(dialog, ProblemReport):
         return dialog.behind
     return dialog if isinstance(dialog, RecoveryDialog) else None

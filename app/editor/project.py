@@ -38,7 +38,7 @@ from app.document import (
     track_in,
     transform_at,
 )
-from app.editor.timeline_view import TimelineState
+from app.editor.parts.timeline import TimelineState
 from app.editor.work.derived import Derived
 from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime
 from app.editor.work.motion_setup import MotionJob, MotionSetup
@@ -96,7 +96,6 @@ class BlendPreview:
 class Project(Revised):
     """The open document, and the person's view of it."""
 
-    revision: int = field(init=False, default=0, repr=False)
     history: History
     name: str  # file name of the picture or the project, without suffix
     path: Path | None  # the project file; None for a new project

@@ -3,28 +3,18 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import wraps
-from itertools import count
 from pathlib import Path
-from typing import Any, Concatenate, Literal, ParamSpec, Protocol
+from typing import Concatenate, Literal, ParamSpec, Protocol
 
-from app.document import (
-    BaseKey,
-    Baseline,
-    Channel,
-    Document,
-    Keyframe,
-    Layer,
-    Meshing,
-    Track,
-    TrackKey,
-    Variant,
-)
+from app.document import Baseline, Document, Meshing, Variant
 from app.editor.action import Action
-from app.editor.dialogs import Dialog, FileDialog
+from app.editor.parts.clipboard import Clipboard
+from app.editor.parts.diagnostics import Diagnostics
+from app.editor.parts.dialogs import DialogState, FileDialog
+from app.editor.parts.notices import Notices
 from app.editor.project import Project
 from app.editor.work.jobs import Jobs
 from app.editor.work.revised import Revised
-from app.errors import display_message, printable
 from app.export import CachedVertices, ExportPlan
 from app.motion import BoundingBox
 from app.storage import Autosave, Cancellation, Preferences, home_folder
@@ -35,7 +25,6 @@ CurveKind = Literal["relative", "absolute"]
 CutTool = Literal["keep", "remove", "knife", "pick", "holes"]
 Tint = Literal["depth", "stiffness"]
 MaterialTool = Literal["stiff", "soft", "normal", "bone"]
-Tone = Literal["info", "good", "error"]
 TutorialStage = Literal["handle", "time", "pose", "play", "export", "done"]
 CLICK = 3.0  # screen pixels that the pointer may move during a click
 P = ParamSpec("P")
@@ -63,20 +52,6 @@ class CompareView:
     divider: float = 0.5  # place of the divider, as a share of the viewport's width
     # Whether both methods are shown whole, side by side, instead of under a divider.
     is_side_by_side: bool = False
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Toast:
-    """A message that shows for a while."""
-
-    text: str
-    tone: Tone
-    born: float  # the clock's seconds
-    place: int  # the lowest free number, since ImGui never frees a window
-    topic: str = ""  # a later message of the same topic replaces it
-    details: str = ""  # text that the person can copy
-    label: str = ""  # label of the action's button, such as "Open folder"
-    action: Action | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -154,33 +129,6 @@ Mark = (
 )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CopiedKeys:
-    """Copied keys or a single copied pose, with the layer at that time."""
-
-    layer: Layer
-    keys: tuple[Keyframe, ...]
-    is_pose: bool = False  # whether it is a pose without easing
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class CopiedTrack:
-    """Copied keys of a track, with the track and its layer at that time."""
-
-    layer: Layer
-    track: Track
-    keys: tuple[TrackKey, ...]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class CopiedChannel:
-    """Copied keys of another channel, with its layer at that time, if it has one."""
-
-    layer: Layer | None
-    channel: Channel[Any]
-    keys: tuple[BaseKey, ...]
-
-
 @dataclass(frozen=True, slots=True)
 class Hint:
     """A hint about the pointer: gesture and effect as one text, and the key to hold."""
@@ -248,7 +196,6 @@ class TutorialState:
 class Session(Revised):
     """All values that one window changes while it runs."""
 
-    revision: int = field(init=False, default=0, repr=False)
     clock: Callable[[], float]
     jobs: Jobs
     folder: Path  # folder of settings and unsaved work
@@ -256,17 +203,17 @@ class Session(Revised):
     saved_preferences: Preferences = field(init=False)  # as on the disk
     autosave: Autosave = field(init=False)
     project: Project | None = None
+    notices: Notices = field(init=False)
+    dialogs: DialogState = field(default_factory=DialogState)
+    clipboard: Clipboard = field(default_factory=Clipboard)
+    diagnostics: Diagnostics = field(default_factory=Diagnostics)
     overlays: Overlays = field(default_factory=Overlays)
     screen: tuple[int, int] = (640, 480)  # pixels of the viewport
     full_detail: bool = True  # whether the full mesh is drawn fast enough in motion
-    solver_seconds: float = 0.0
     # Whether values are prepared before they are shown: in-betweens, corrections, series for
     # smooth playback, measured distortion and the extent of the motion. Most tests turn this off.
     prepares_ahead: bool = True
     meshing: Meshing = field(default_factory=Meshing)  # of new pictures
-    toasts: list[Toast] = field(default_factory=list)
-    dialog: Dialog | None = None
-    system_dialogs: bool = False  # whether the system's own file dialogs are used
     export: ExportRun | None = None
     exported: ExportPlan | None = None  # the last complete export
     cancellation: Cancellation = field(default_factory=Cancellation)  # of the export
@@ -291,22 +238,16 @@ class Session(Revised):
     is_forcing_targets: bool = False  # whether released targets beyond reach stay
     # Whether actions on the selection mean the timeline: it has the pointer, or else the focus.
     is_timeline_focused: bool = False
-    copied: tuple[CopiedKeys, ...] = ()  # one for each copied layer
-    copied_tracks: tuple[CopiedTrack, ...] = ()  # one for each copied track
-    copied_channels: tuple[CopiedChannel, ...] = ()  # one for each other copied channel
     is_space_used: bool = False  # whether Space was held to pan the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about the item under the pointer
     tint: Tint | None = None  # quantity that colours the drawing
-    reported_failures: set[str] = field(default_factory=set)  # repeated failures that were reported
-    graphics: str = ""  # graphics driver; empty before the first frame
-    logged_actions: list[str] = field(default_factory=list)  # names of the last actions
-    last_error_trace: str = ""  # of the last unexpected error
     is_quitting: bool = False
 
     def __post_init__(self) -> None:
         self.saved_preferences = self.preferences
         self.autosave = Autosave(self.folder)
+        self.notices = Notices(clock=self.clock)
 
     @property
     def is_posing(self) -> bool:
@@ -329,44 +270,16 @@ class Session(Revised):
         name: str = "",
     ) -> None:
         """Ask for a file to read, or for a file to write if there is a suggested `name`."""
-        self.dialog = FileDialog(
-            title=title,
-            folder=self.usual_folder,
-            name=name,
-            suffixes=suffixes,
-            writes=bool(name),
-            chosen=chosen,
+        self.dialogs.show(
+            FileDialog(
+                title=title,
+                folder=self.usual_folder,
+                name=name,
+                suffixes=suffixes,
+                writes=bool(name),
+                chosen=chosen,
+            )
         )
-
-    def show_notice(
-        self,
-        text: str,
-        *,
-        tone: Tone = "info",
-        topic: str = "",
-        details: str = "",
-        label: str = "",
-        action: Action | None = None,
-    ) -> None:
-        """Show a message; a message that is already shown starts its time again."""
-        text, details = display_message(text), printable(details, keeps_lines=True)
-        self.toasts = [
-            toast
-            for toast in self.toasts
-            if toast.text != text and not (topic == toast.topic != "")
-        ]
-        taken = {toast.place for toast in self.toasts}
-        toast = Toast(
-            text=text,
-            tone=tone,
-            born=self.clock(),
-            place=next(place for place in count() if place not in taken),
-            topic=topic,
-            details=details,
-            label=label,
-            action=action,
-        )
-        self.toasts.append(toast)
 
 
 def with_project(

@@ -28,7 +28,7 @@ def draw_toasts(session: Session, look: Look) -> list[Action]:
     status_bar = imgui.get_frame_height() + look.em
     bottom = viewport.work_pos.y + viewport.work_size.y - status_bar - 0.5 * gap
     now = session.clock()
-    for toast in reversed(session.toasts[-MOST:]):
+    for toast in reversed(session.notices.toasts[-MOST:]):
         age = now - toast.born
         left = SECONDS[toast.tone] - age
         imgui.set_next_window_pos(ImVec2(right, bottom), imgui.Cond_.always, ImVec2(1, 1))

@@ -23,13 +23,14 @@ def test_catalogue_has_all_texts(request):
 
 def test_refusals_and_undo_steps_have_no_text_beside_the_catalogue():
     """The window shows few of them in any one run."""
-    said = {"LissomError", "command", "layer_command", "require", "show_notice", "JobKind"}
+    said = {"LissomError", "command", "layer_command", "require", "notices.show", "JobKind"}
     beside = []
     for path in source_files():
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if not isinstance(node, ast.Call) or not node.args:
                 continue
-            name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+            called = ast.unparse(node.func).split(".")
+            name = ".".join(called[-2:] if called[-1] == "show" else called[-1:])
             text = node.args[name == "require" and len(node.args) > 1]
             parts = text.values if isinstance(text, ast.JoinedStr) else [text]
             literal = " ".join(str(each.value) for each in parts if isinstance(each, ast.Constant))

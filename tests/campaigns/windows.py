@@ -44,7 +44,7 @@ from app.cli.main import main
 from app.document.commands import scene_commands
 from app.editor import do
 from app.editor.actions.project_files import files, saving
-from app.editor.dialogs import Question
+from app.editor.parts.dialogs import Question
 
 saving.SECONDS = float(sys.argv[1])
 asked = Path(sys.argv[2])

@@ -93,7 +93,7 @@ def _cut_out(window: Film, path: Path) -> None:
     with TemporaryDirectory() as scratch:
         window.open(_photo(Path(scratch)))
         window.show_tab("Cut-out")
-        window.session.toasts.clear()  # what opening it told
+        window.session.notices.toasts.clear()  # what opening it told
         come_to_rest(window)
         window.put(window.point(-60 + 300j))
         with window.filmed(path):

@@ -109,7 +109,7 @@ def _walk(window: Film, path: Path) -> None:
     window.act(playback.seek, 24)
     window.act(pasting.paste_copied)
     window.settle()
-    window.session.toasts.clear()  # what copying told
+    window.session.notices.toasts.clear()  # what copying told
     window.act(keys.toggle_loop)
     window.act(keys.set_last_frame, 96)
     window.act(editing.select_keys, frozenset({0, 6, 12, 18, 24}))

@@ -45,7 +45,7 @@ def come_to_rest(window: Harness) -> None:
     """Let all be done and faded; refuse messages, which would cover what is to be shown."""
     window.settle()
     window.frames(AT_REST)
-    told = [toast.text for toast in window.session.toasts]
+    told = [toast.text for toast in window.session.notices.toasts]
     if told:
         raise RuntimeError(f"a message covers the picture: {told}")
 

@@ -99,8 +99,10 @@ class Harness:
         fresh = Session(clock=self.clock, jobs=jobs, folder=self.folder)
         saving.set_project(self.session, None)
         for field in fields(Session):
-            if field.name not in {"screen", "full_detail", "graphics", "revision"}:
+            if field.name not in {"screen", "full_detail", "diagnostics", "revision"}:
                 setattr(self.session, field.name, getattr(fresh, field.name))
+        fresh.diagnostics.note_graphics(self.session.diagnostics.graphics)
+        self.session.diagnostics = fresh.diagnostics
         # Small meshes, and nothing that nobody looks at, so that the tests are quick.
         self.session.meshing = Meshing(triangles=2_000, detail="coarse")
         self.session.prepares_ahead = False
@@ -117,7 +119,9 @@ class Harness:
         saving.set_project(self.session, None)
         files.open_file(self.session, path)
         self.settle()
-        assert self.session.project is not None, [toast.text for toast in self.session.toasts]
+        assert self.session.project is not None, [
+            toast.text for toast in self.session.notices.toasts
+        ]
         return self.session.project
 
     def again(self, make: Callable[..., object], *arguments: object) -> Project:
@@ -205,7 +209,7 @@ class Harness:
         """Draw frames until something is so, however long the workers take to it."""
         end = time.monotonic() + PATIENCE
         while not is_so():
-            told = [toast.text for toast in self.session.toasts]
+            told = [toast.text for toast in self.session.notices.toasts]
             assert time.monotonic() < end, (self.session.jobs.kinds, told)
             self.frames()
             # Meanwhile the workers have the interpreter for themselves.

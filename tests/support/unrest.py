@@ -24,8 +24,8 @@ def unrest(session: Session) -> str:
         lines.append(f"waits for a mesh: {project.stale_layer.name!r}")
     lines += _shown(project)
     lines.append(f"settled: {pending_changes.is_document_idle(project)}")
-    lines.append(f"failing: {sorted(session.reported_failures)}")
-    lines += [f"message: {toast.text!r}" for toast in session.toasts]
+    lines.append(f"failing: {sorted(session.diagnostics.reported_failures)}")
+    lines += [f"message: {toast.text!r}" for toast in session.notices.toasts]
     return "\n".join(lines)
 
 

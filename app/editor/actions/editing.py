@@ -131,7 +131,7 @@ def redo(session: Session, project: Project) -> None:
 
 def _show_step_notice(session: Session, text: str, label: str | None) -> None:
     if label is not None:
-        session.show_notice(text.format(step=label), topic="undo")
+        session.notices.show(text.format(step=label), topic="undo")
 
 
 def _go_to_change(
@@ -230,7 +230,7 @@ def _delete_keys(session: Session, project: Project) -> None:
     left = {channel: frames for channel, frames in keys.items() if frames}
     edit_document(session, channel_commands.delete_keys(left or project.selected_keys))
     if keeping:
-        session.show_notice(_(FIRST_KEY_STAYS).format(layers=", ".join(keeping)))
+        session.notices.show(_(FIRST_KEY_STAYS).format(layers=", ".join(keeping)))
 
 
 def update_layer_runtimes(project: Project) -> None:

@@ -19,13 +19,14 @@ from app.editor.actions.tracking.correction_jobs import (
 )
 from app.editor.actions.tracking.recording import update_track_drags
 from app.editor.error_reports import report_failure
+from app.editor.parts.timeline import measure_key_errors
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import measure_key_errors
 from app.editor.work.derived import Derived
 from app.editor.work.jobs import Job, JobKind
 from app.editor.work.layer_runtime import LayerRuntime
 from app.editor.work.pull import Pull
+from app.editor.work.revised import revision_getter
 from app.motion import (
     DeformMesh,
     InbetweenCache,
@@ -62,6 +63,8 @@ ATTACHING = JobKind(_("Joints"), _("The joints cannot be followed between the ke
 TRACING = JobKind(_("Motion paths"), _("The paths of the handles cannot be traced"))
 MEASURING = JobKind(_("Measuring"), _("The distortion could not be measured"))
 SPANNING = JobKind(_("Measuring the motion"), _("The extent of the motion could not be measured"))
+SESSION_REVISIONS = revision_getter(Session, "jobs")
+PROJECT_REVISIONS = revision_getter(Project, "history")
 
 Source = TypeVar("Source")
 Value = TypeVar("Value")
@@ -122,13 +125,11 @@ STEPS: tuple[Callable[[Session], None], ...] = (
 )
 
 
-def session_revision(session: Session) -> tuple[object, ...]:
+def session_revision(session: Session) -> tuple[int, ...]:
     """Return a value that differs after any change that a step of the frame depends on."""
-    project, own = session.project, (session.revision, session.jobs.revision)
-    if project is None:
-        return own
-    history = project.history
-    return (*own, project.revision, history.revision)
+    project = session.project
+    own = SESSION_REVISIONS(session)
+    return own if project is None else own + PROJECT_REVISIONS(project)
 
 
 def is_due_in_time(session: Session) -> bool:

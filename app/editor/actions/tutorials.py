@@ -82,7 +82,7 @@ def update_tutorial(session: Session) -> None:
         return
     if guide.project is None:
         # No file was chosen, or the file could not be opened.
-        is_given_up = project is None and session.dialog is None and not session.jobs.kinds
+        is_given_up = project is None and session.dialogs.current is None and not session.jobs.kinds
         session.tutorial = None if is_given_up else _attached(session, guide)
     elif guide.project is not project:
         session.tutorial = None

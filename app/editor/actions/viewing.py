@@ -9,9 +9,10 @@ from typing import Any, Literal
 
 from app.document import Baseline, Meshing, Variant
 from app.editor.action import Action, do
-from app.editor.dialogs import Dialog, FileDialog, ProblemReport, ShortcutSheet
+from app.editor.parts.dialogs import Dialog, FileDialog, ShortcutSheet
+from app.editor.parts.notices import Toast
 from app.editor.project import Project, fit_view_around
-from app.editor.session import CurveKind, HeatMap, Session, Tint, Toast, with_project
+from app.editor.session import CurveKind, HeatMap, Session, Tint, with_project
 from app.errors import ImportLog, LissomError
 from app.motion import BoundingBox, bounding_box
 from app.render import View
@@ -197,24 +198,24 @@ def toggle_auto_key(session: Session) -> None:
 
 def show_dialog(session: Session, dialog: Dialog) -> None:
     """Open a dialog in place of the open one."""
-    session.dialog = dialog
+    session.dialogs.show(dialog)
 
 
 def browse_files(session: Session, dialog: FileDialog) -> None:
     """Set the state of the open file browser."""
-    session.dialog = dialog
+    session.dialogs.show(dialog)
 
 
 def choose_file(session: Session, dialog: FileDialog, path: Path) -> None:
     """Give a path to the file dialog's action; the next file dialog opens in its folder."""
-    session.dialog = None
+    session.dialogs.close()
     session.preferences = replace(session.preferences, folder=path.parent)
     dialog.chosen(path).apply(session)
 
 
 def use_own_file_browser(session: Session) -> None:
     """From now on, use Lissom's file browser instead of the system's dialogs."""
-    session.system_dialogs = False
+    session.dialogs.use_own_file_browser()
 
 
 def show_tab(session: Session, title: str) -> None:
@@ -222,7 +223,7 @@ def show_tab(session: Session, title: str) -> None:
 
 
 def show_shortcuts(session: Session) -> None:
-    session.dialog = ShortcutSheet()
+    session.dialogs.show(ShortcutSheet())
 
 
 def open_manual(session: Session, page: str) -> None:
@@ -241,23 +242,26 @@ def open_manual(session: Session, page: str) -> None:
         raise LissomError(_("no browser was found; the manual is {path}").format(path=path))
     # The program that starts the browser may fail later, without an error here.
     text = _("The manual opens in the browser. Its file is {path}.")
-    session.show_notice(text.format(path=path), topic="manual")
+    session.notices.show(text.format(path=path), topic="manual")
 
 
 def close_dialog(session: Session) -> None:
     """Close the dialog without an action; the dialog below a report returns."""
-    dialog = session.dialog
-    session.dialog = dialog.behind if isinstance(dialog, ProblemReport) else None
+    session.dialogs.close()
 
 
 def answer_dialog(session: Session, action: Action) -> None:
     """Close the dialog and run the chosen action."""
-    session.dialog = None
+    session.dialogs.close()
     action.apply(session)
 
 
+def show_notice(session: Session, text: str) -> None:
+    session.notices.show(text)
+
+
 def dismiss_toast(session: Session, toast: Toast) -> None:
-    session.toasts = [other for other in session.toasts if other is not toast]
+    session.notices.dismiss(toast)
 
 
 def set_tint(session: Session, by: Tint | None) -> None:
@@ -271,7 +275,7 @@ def show_import_notice(session: Session, project: Project, summary: ImportLog) -
         return
     project.is_import_log_open = True
     count = len(summary.warnings)
-    session.show_notice(
+    session.notices.show(
         ngettext(
             "One thing looks different here. See the Layers tab.",
             "{count} things look different here. See the Layers tab.",

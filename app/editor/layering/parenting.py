@@ -62,7 +62,7 @@ def attach_layer(
     """
     if is_same_or_descendant(project, parent, child):
         names = [project.document.layer(identity).name for identity in (parent, child)]
-        session.show_notice(
+        session.notices.show(
             _(PARENT_IS_DESCENDANT).format(name=names[0], parent=names[1]),
             tone="error",
             topic="joint",
@@ -121,7 +121,7 @@ def _attach(
         if project.document is document:
             editing.edit_document(session, command)
         else:
-            session.show_notice(
+            session.notices.show(
                 _("The layer was not attached: the project changed meanwhile. Try again.")
             )
 
@@ -198,7 +198,7 @@ def delete_layers(session: Session, project: Project, *identities: int) -> None:
     gone, layers = set(identities), project.document.layers
     if len(gone) == len(layers):
         text = _("A scene needs at least one layer. Add another layer first.")
-        session.show_notice(text, tone="error")
+        session.notices.show(text, tone="error")
     elif any(joint.parent in gone for layer in layers for joint in layer.attachments):
         pending_changes.run_when_idle(
             session, do(_reparent_children, *identities), _("Delete layer")
@@ -222,7 +222,8 @@ def _reparent_children(session: Session, project: Project, *identities: int) -> 
         if project.document is document:
             _delete(session, identities, inherited)
         else:
-            session.show_notice(_("Nothing was deleted: the project changed meanwhile. Try again."))
+            text = _("Nothing was deleted: the project changed meanwhile. Try again.")
+            session.notices.show(text)
 
     pending_changes.begin_pending_change(session, project, ATTACHING, find, done)
 

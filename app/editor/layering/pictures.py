@@ -11,7 +11,6 @@ from app.editor.action import Action, do
 from app.editor.actions import editing, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.project_files import files
-from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
@@ -123,7 +122,7 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
         if resolver.before in project.document.layers:
             set_active_layer(session, identity)
             for notice in made.notices:
-                session.show_notice(as_sentence(notice))
+                session.notices.show(as_sentence(notice))
 
     kind = JobKind(
         _("Replacing a picture"),
@@ -264,4 +263,4 @@ def drop_files(session: Session, paths: Sequence[Path]) -> None:
         ).format(count=len(pictures))
     else:
         title = _("Add {name} to this scene?").format(name=first.name)
-    session.dialog = Question(title=title, text=text, answers=tuple(answers))
+    session.dialogs.ask(title=title, text=text, answers=tuple(answers))

@@ -19,9 +19,10 @@ from app.document import (
 from app.editor import pending_changes
 from app.editor.actions import playback
 from app.editor.actions.posing.pose_drag import pose_at_playhead
+from app.editor.parts.clipboard import CopiedChannel, CopiedKeys, CopiedTrack
 from app.editor.poses import pose_insertion
 from app.editor.project import Project
-from app.editor.session import CopiedChannel, CopiedKeys, CopiedTrack, Session, with_project
+from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler
 from app.solving import Rig, fit_shown_pose
@@ -78,14 +79,13 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
     def take(found: Mapping[int, Pose]) -> None:
         poses = {**known, **found}
         keys = [(each, Keyframe(frame=frame, pose=poses[each.id])) for each in layers]
-        session.copied = tuple(CopiedKeys(layer, (key,), is_pose=True) for layer, key in keys)
-        session.copied_tracks = session.copied_channels = ()
+        session.clipboard.put([CopiedKeys(layer, (key,), is_pose=True) for layer, key in keys])
         text = ngettext(
             "Pose of {count} layer at frame {frame} copied.",
             "Poses of {count} layers at frame {frame} copied.",
             len(keys),
         )
-        session.show_notice(text.format(count=len(keys), frame=frame), topic="copy")
+        session.notices.show(text.format(count=len(keys), frame=frame), topic="copy")
 
     if works:
         pending_changes.begin_pending_change(
@@ -94,7 +94,8 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
     elif layers:
         take({})
     else:
-        session.show_notice(_("There are no poses to copy: no layer has a handle or a second key."))
+        text = _("There are no poses to copy: no layer has a handle or a second key.")
+        session.notices.show(text)
 
 
 def is_copying_keys(session: Session, project: Project) -> bool:
@@ -134,8 +135,7 @@ def _take(
     tracks: Sequence[CopiedTrack] = (),
     others: Sequence[CopiedChannel] = (),
 ) -> None:
-    session.copied, session.copied_tracks = tuple(copied), tuple(tracks)
-    session.copied_channels = tuple(others)
+    session.clipboard.put(copied, tracks, others)
     poses = [key.frame for each in copied for key in each.keys]
     rows: list[Sequence[BaseKey]] = [each.keys for each in tracks]
     rows += [each.keys for each in others]
@@ -147,4 +147,4 @@ def _take(
         text = _("Pose at frame {frame} copied.").format(frame=first)
     else:
         text = _("Key at frame {frame} copied.").format(frame=first)
-    session.show_notice(text, topic="copy")
+    session.notices.show(text, topic="copy")

@@ -1,10 +1,11 @@
 """The mirror axis of poses, and repeated flips after it was moved."""
 
 from app.document import pose_commands
+from app.editor.parts.clipboard import CopiedKeys
 from app.editor.poses import pasting
 from app.editor.poses.paste_destinations import find_paste_destination
 from app.editor.project import Project
-from app.editor.session import CopiedKeys, Session, with_project
+from app.editor.session import Session, with_project
 
 
 def can_flip_again(project: Project) -> bool:

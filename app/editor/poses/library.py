@@ -8,10 +8,11 @@ from typing import NamedTuple
 from app.document import Keyframe, Layer, LibraryPose, Pose, Target, pose_commands
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.pose_drag import drag_handles, end_drag_at, release_drag
+from app.editor.parts.clipboard import CopiedKeys
 from app.editor.poses import pasting, pose_insertion
 from app.editor.poses.paste_destinations import PasteDestination, find_paste_destination
 from app.editor.project import BlendPreview, Project
-from app.editor.session import CopiedKeys, Session, with_project
+from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.editor.work.pull import DragStart
 from app.texts import _
@@ -29,7 +30,7 @@ def save_pose_to_library(session: Session, project: Project) -> None:
 
 def _save_pose(session: Session, project: Project, layer: Layer, pose: Pose) -> None:
     if layer.domain is not project.layer.domain:
-        session.show_notice(
+        session.notices.show(
             _("The pose was not saved: the shape changed meanwhile. Save it again.")
         )
         return
@@ -98,7 +99,7 @@ def _paste_destination(project: Project, offer: PoseOffer) -> PasteDestination:
 def _put(session: Session, project: Project, offer: PoseOffer, frame: int) -> None:
     landing = _paste_destination(project, offer)
     if landing.disabled_reason:
-        session.show_notice(landing.disabled_reason)
+        session.notices.show(landing.disabled_reason)
         return
     project.picked_pose = (offer.owner.id, offer.kept.name)
     pasting.paste_poses(session, project, [landing], "as it is", frame, label=_("Use pose"))

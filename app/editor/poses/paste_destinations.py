@@ -7,8 +7,9 @@ from typing import Literal
 import numpy as np
 
 from app.document import Document, Layer, SidePairs, mirrored_name
+from app.editor.parts.clipboard import CopiedKeys
 from app.editor.project import Project
-from app.editor.session import CopiedKeys, Session
+from app.editor.session import Session
 from app.solving import PoseTransfer, SimilarityTransform
 from app.texts import _, ngettext
 
@@ -97,7 +98,7 @@ def find_active_paste_destination(
     session: Session, project: Project, way: PasteMode
 ) -> PasteDestination | None:
     """Return the active layer as a destination; None if it takes nothing."""
-    copied = session.copied
+    copied = session.clipboard.poses
     if len(copied) == 1:
         return find_paste_destination(project.document, copied[0], project.layer, way)
     found = _find_paste_destinations(session, project, way)
@@ -183,9 +184,9 @@ def _find_paste_destinations(
 
 def _copied(session: Session) -> list[CopiedKeys]:
     """Return the copied keys of each layer; none if only track keys were copied."""
-    copied = {each.layer.id: each for each in session.copied}
-    others = [each.layer for each in session.copied_tracks]
-    for layer in filter(None, [*others, *(each.layer for each in session.copied_channels)]):
+    copied = {each.layer.id: each for each in session.clipboard.poses}
+    others = [each.layer for each in session.clipboard.tracks]
+    for layer in filter(None, [*others, *(each.layer for each in session.clipboard.channels)]):
         copied.setdefault(layer.id, CopiedKeys(layer, ()))
     return list(copied.values())
 

@@ -48,7 +48,7 @@ def paste_disabled_reason(session: Session, project: Project, way: PasteMode) ->
     if pasteable_tracks(session, project, way) or pasteable_keys(session, project, way):
         return ""
     reason = paste_keys_disabled_reason(session, project, way)
-    return reason or ("" if session.copied else NO_PLACE)
+    return reason or ("" if session.clipboard.poses else NO_PLACE)
 
 
 def paste_on_selected_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
@@ -94,7 +94,7 @@ def _paste(session: Session, project: Project, frame: int, way: PasteMode) -> No
             paste_track(session, project, row, each, by, gesture)
         paste_keys(session, project, others, by, gesture)
         for reason in reasons:
-            session.show_notice(reason)
+            session.notices.show(reason)
         names = [each.layer.name for each in found]
         if any(each.layer.id != project.active for each in found):
             if len(names) > 1:
@@ -104,7 +104,7 @@ def _paste(session: Session, project: Project, frame: int, way: PasteMode) -> No
                 text = text.format(count=len(names))
             else:
                 text = _("Pasted onto {layer}.").format(layer=names[0])
-            session.show_notice(text, topic="paste")
+            session.notices.show(text, topic="paste")
 
     project.selected_keys = {}
     if found:
@@ -158,7 +158,7 @@ def paste_poses(
 
     def done(solved: Mapping[int, Sequence[Keyframe]]) -> None:
         if not all(_is_as_it_was(project, each) for each in found):
-            session.show_notice(NOT_PASTED)
+            session.notices.show(NOT_PASTED)
             return
         put(solved)
         if playback.current_frame(session, project) != frame:

@@ -18,13 +18,14 @@ from app.document import (
     mirrored_name,
     source_frame,
 )
+from app.editor.parts.clipboard import CopiedChannel
 from app.editor.poses.paste_destinations import (
     PasteMode,
     find_receiving_layers,
     match_handles,
 )
 from app.editor.project import Project
-from app.editor.session import CopiedChannel, Session
+from app.editor.session import Session
 from app.errors import LissomError
 from app.texts import message_of
 
@@ -38,10 +39,10 @@ def pasteable_keys(session: Session, project: Project, way: PasteMode) -> Pasted
     transforms, and a swap goes to partners by name.
     """
     document, pasted = project.document, dict[Channel[Any], Sequence[BaseKey]]()
-    layers = {each.layer.id for each in session.copied}
-    layers |= {each.layer.id for each in session.copied_tracks}
-    layers |= {each.layer.id for each in session.copied_channels if each.layer is not None}
-    for each in session.copied_channels:
+    layers = {each.layer.id for each in session.clipboard.poses}
+    layers |= {each.layer.id for each in session.clipboard.tracks}
+    layers |= {each.layer.id for each in session.clipboard.channels if each.layer is not None}
+    for each in session.clipboard.channels:
         source = each.layer
         if source is None:
             if way == "as it is" and _exists(document, each.channel):
@@ -75,7 +76,7 @@ def paste_keys(
         try:
             project.history.do(channel_commands.insert_keys({channel: moved}), gesture=gesture)
         except LissomError as error:
-            session.show_notice(message_of(error))
+            session.notices.show(message_of(error))
             continue
         frames = frozenset(key.frame for key in moved)
         project.selected_keys = {**project.selected_keys, channel: frames}

@@ -8,9 +8,10 @@ from app.document import (
     track_channel,
     track_commands,
 )
+from app.editor.parts.clipboard import CopiedTrack
 from app.editor.poses.paste_destinations import PasteDestination, PasteMode, find_paste_destinations
 from app.editor.project import Project
-from app.editor.session import CopiedTrack, Session
+from app.editor.session import Session
 from app.texts import _
 
 
@@ -21,7 +22,7 @@ def pasteable_tracks(
 
     Keys of a single track go to the selected track. Otherwise they go with the poses, by names.
     """
-    copied, chosen = session.copied_tracks, project.selected_track
+    copied, chosen = session.clipboard.tracks, project.selected_track
     if way == "as it is" and len(copied) == 1 and chosen is not None:
         return {(project.active, chosen): copied[0]}
     carried = {}
@@ -87,7 +88,7 @@ def paste_track(
                 "The copied keys go with the pose, but the keys of {handle} are planted. "
                 "Choose the same for both in the Handle tab, then copy again."
             )
-        session.show_notice(text.format(handle=name))
+        session.notices.show(text.format(handle=name))
         return
     by += copied.track.delay - (0 if track is None else track.delay)
     keys = tuple(replace(key, frame=key.frame + by) for key in copied.keys)
@@ -95,7 +96,7 @@ def paste_track(
         text = _(
             "The delay of {handle}'s track is too long for a key at this frame. Shorten the delay."
         )
-        session.show_notice(text.format(handle=name))
+        session.notices.show(text.format(handle=name))
         return
     if track is None:
         handles = copied.track.handles if copied.track.handles[0] == handle else (handle,)

@@ -77,7 +77,7 @@ class AttachTool(Tool):
             attach_layer(session, self.child, self.parent, turns, there if is_on_both else None)
         else:
             text = _("Let go of the anchor over another layer to attach this layer.")
-            session.show_notice(text, topic="joint")
+            session.notices.show(text, topic="joint")
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:

@@ -99,7 +99,7 @@ def _set_root_parent_active(session: Session, project: Project, layer: int | Non
             text = _(
                 "{layer} is a still picture: it stays where it is, with all layers attached to it."
             )
-        session.show_notice(text.format(layer=root.name))
+        session.notices.show(text.format(layer=root.name))
         return False
     set_active_layer(session, root.id)
     return True

@@ -207,8 +207,8 @@ def list_status_items(session: Session) -> list[StatusItem]:
                 _("Handles of this drawing"),
             )
         )
-    if session.solver_seconds:
-        milliseconds = 1e3 * session.solver_seconds
+    if session.diagnostics.solver_seconds:
+        milliseconds = 1e3 * session.diagnostics.solver_seconds
         facts.append(
             StatusItem(
                 _("pose {time:.0f} ms").format(time=milliseconds),

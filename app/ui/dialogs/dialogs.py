@@ -51,7 +51,7 @@ class Dialogs:
 
     def draw(self, session: Session, look: Look, thumbnail: LookUp) -> list[Action]:
         self._follow_session(session)
-        dialog = session.dialog
+        dialog = session.dialogs.current
         _use_keyboard(is_used=isinstance(dialog, (Question, RecoveryDialog)))
         if dialog is None:
             return []
@@ -85,7 +85,7 @@ class Dialogs:
 
     def _follow_session(self, session: Session) -> None:
         """Open and close system dialogs to match the session."""
-        dialog = session.dialog if session.system_dialogs else None
+        dialog = session.dialogs.current if session.dialogs.uses_system else None
         if self._native is not None and self._native.dialog is not dialog:
             self.close()
         if self._native is None and isinstance(dialog, FileDialog):

@@ -189,7 +189,7 @@ def _solver(session: Session, look: Look, project: Project) -> None:
     pose = None if shown is None else shown.pose
     if project.pull is not None and not project.pull.is_at_rest:
         _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, _("Following the handles"))
-        time = 1000 * session.solver_seconds
+        time = 1000 * session.diagnostics.solver_seconds
         small_text(look, _("{time:.0f} ms a step").format(time=time))
         return
     if shown is None or pose is None:

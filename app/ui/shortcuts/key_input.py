@@ -23,7 +23,7 @@ ARROWS = {Key.left_arrow: -1, Key.right_arrow: 1, Key.up_arrow: 1j, Key.down_arr
 
 def collect_key_actions(session: Session) -> list[Action]:
     """Return the actions whose keys were pressed, unless the person types into a field."""
-    if session.dialog is not None:
+    if session.dialogs.current is not None:
         return []
     if _close_menu() or imgui.get_io().want_text_input:
         return []
@@ -50,7 +50,7 @@ def _press_shortcuts(session: Session) -> list[Action]:
         if binding.is_possible(session):
             actions.append(binding.action)
         elif reason := binding.disabled_reason(session):
-            actions.append(do(Session.show_notice, reason))
+            actions.append(do(viewing.show_notice, reason))
     return actions
 
 

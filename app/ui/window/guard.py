@@ -205,7 +205,7 @@ def _state(session: Session) -> tuple[object, ...]:
     project = session.project
     own = (
         *(
-            session.dialog,
+            session.dialogs.current,
             session.preferences,
             session.overlays,
             session.compare_view,

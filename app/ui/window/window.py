@@ -246,7 +246,7 @@ class Window:
     def _start(self) -> None:
         renderer = self._renderer = self._connect()
         self.session.full_detail = not is_software(renderer.programs.context)
-        self.session.graphics = describe_graphics(renderer.programs.context)
+        self.session.diagnostics.note_graphics(describe_graphics(renderer.programs.context))
         self.canvas = Canvas(renderer)
         self._exporter = Exporter(renderer)
         self.thumbnails = Thumbnails(renderer.programs.context)
@@ -284,7 +284,9 @@ class Window:
         self.thumbnails.begin_frame()
         # Only the welcome view and the file browser show thumbnails. Files may have been saved
         # again before the next time; samples do not change.
-        shows_files = self.session.project is None or isinstance(self.session.dialog, FileDialog)
+        shows_files = self.session.project is None or isinstance(
+            self.session.dialogs.current, FileDialog
+        )
         if self._shows_files and not shows_files:
             self.thumbnails.release(but=sample_images())
         self._shows_files = shows_files

@@ -110,7 +110,7 @@ class WindowFrame:
         # Every part of the window's frame, by its name.
         self.parts = {part.name: part for part in (*over, *bars_around, *menus, *docked, *grounds)}
         self._over = [part.name for part in over]
-        self._revision: tuple[object, ...] = ()  # of the session when the steps last ran
+        self._revision: tuple[int, ...] = ()  # of the session when the steps last ran
         self._follow = self._step(frame_update.follow_playhead)
         self._update_steps = [
             self._step(each)
@@ -173,7 +173,7 @@ class WindowFrame:
 
     def _report_error(self, error: Exception) -> None:
         if isinstance(error, EXPECTED_ERRORS):
-            self.session.show_notice(as_sentence(message_of(error)), tone="error")
+            self.session.notices.show(as_sentence(message_of(error)), tone="error")
         else:
             error_reports.report_unexpected_error(
                 self.session, _("Lissom could not do this: {error}").format(error=error), error
@@ -240,7 +240,7 @@ class WindowFrame:
         actions, self._actions, self._asked = self._actions + self._asked, [], []
         for action in actions:
             if action.verb not in UNLOGGED:
-                error_reports.log_action(self.session, action)
+                self.session.diagnostics.log_action(action.name)
             self.run_guarded(partial(action.apply, self.session))
         if self.session.panel_to_focus:
             bring_to_front(self.session.panel_to_focus)

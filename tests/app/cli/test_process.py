@@ -18,7 +18,7 @@ from app.document import History
 from app.document.commands import scene_commands
 from app.editor import error_reports
 from app.editor.actions.project_files import autosaving
-from app.editor.dialogs import ProblemReport
+from app.editor.parts.dialogs import ProblemReport
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs

@@ -25,7 +25,7 @@ from app.editor.actions import editing
 from app.editor.actions.editing import FIRST_KEY_STAYS
 from app.editor.actions.timing import keys
 from app.editor.actions.timing.keys import NO_LAST_FRAME
-from app.editor.timeline_view import measure_key_errors
+from app.editor.parts.timeline import measure_key_errors
 from app.editor.work.derived import Derived
 from app.errors import LissomError
 
@@ -41,7 +41,7 @@ def session(tmp_path):
 
 
 def texts(session):
-    return [toast.text for toast in session.toasts]
+    return [toast.text for toast in session.notices.toasts]
 
 
 def test_deleting_all_keys_keeps_the_first_of_each_layer(session):

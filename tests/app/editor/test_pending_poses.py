@@ -39,7 +39,7 @@ def test_refused_pose_is_reported_once(session):
         project.history.do(cycle_commands.set_cycle(0, 0, last + 2))
     settle(session)
     settle(session)
-    (toast,) = session.toasts
+    (toast,) = session.notices.toasts
     assert toast.text.startswith(NO_POSE)
     assert not project.pending
     assert project.layer_runtime.shown.clip == project.clip
@@ -119,4 +119,4 @@ def test_turn_of_a_handle_that_came_later_is_left_out(session):
         add_handle(session, complex(project.layer.domain.mesh.vertices[0]))
         free_rotation(session, project.layer.handles[-1].id)
     settle(session)
-    assert not [toast.text for toast in session.toasts]
+    assert not [toast.text for toast in session.notices.toasts]

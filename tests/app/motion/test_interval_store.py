@@ -489,7 +489,7 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
         settle()
     store = project.layer_runtime.store
     assert asked.count(STREAMING) == 1
-    assert [toast.text for toast in session.toasts] == ["Playback cannot be made smooth."]
+    assert [toast.text for toast in session.notices.toasts] == ["Playback cannot be made smooth."]
     assert streamed(store, clip) == [False] * 3
     assert store.has_failed(clip, "series")
     # The other intervals are as they were.

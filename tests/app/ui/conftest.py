@@ -18,7 +18,7 @@ def _only_window() -> Harness:
 def window(_only_window: Harness) -> Iterator[Harness]:
     _only_window.reset()
     yield _only_window
-    problems = [toast.details for toast in _only_window.session.toasts if toast.details]
+    problems = [toast.details for toast in _only_window.session.notices.toasts if toast.details]
     assert not problems, problems[0]
 
 

@@ -176,7 +176,7 @@ def test_it_is_not_lost_where_something_else_follows(window, bent, come, leave):
     before = bent.document
     window.run(lambda robot: (drag(robot, window, bent), robot.mouse_up(0)))
     window.act(leave)
-    window.session.dialog = None
+    window.session.dialogs.current = None
     come()
     window.until(lambda: not bent.pulls)
     playback.stop_playback(window.session)

@@ -9,7 +9,7 @@ from invariants import check_invariants
 from app.document.commands import scene_commands
 from app.editor.actions import editing, playback
 from app.editor.actions.project_files import exporting, saving
-from app.editor.dialogs import Question
+from app.editor.parts.dialogs import Question
 from app.editor.poses import copying
 from app.storage import load_project
 from app.ui.shortcuts.table import BINDINGS
@@ -72,7 +72,7 @@ def test_drag_survives_each_command_that_edits_nothing(window, ready, monkeypatc
     dragged, label = ready.document, ready.history.undo_label
     for name in VIEWS:
         call(window, name)
-        session.dialog = None
+        session.dialogs.current = None
         playback.scrub(session, BENT)
         check_invariants(session)
         held = {
@@ -129,14 +129,14 @@ def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
     call(window, name)
     window.until(lambda: not ready.pending and not ready.deferred)
     assert session.project is ready, "it asks first"
-    if isinstance(session.dialog, Question):
-        (_, save), _ = session.dialog.answers
-        session.dialog = None
+    if isinstance(session.dialogs.current, Question):
+        (_, save), _ = session.dialogs.current.answers
+        session.dialogs.current = None
         save.apply(session)
         window.until(lambda: session.project is None or session.is_quitting)
         check_at_rest(load_project(path), goal)
         return
-    session.dialog = None
+    session.dialogs.current = None
     window.until(lambda: session.export is None and exporting.PREPARING not in session.jobs.kinds)
     playback.stop_playback(session)
     check_invariants(session)

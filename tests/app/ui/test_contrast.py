@@ -23,7 +23,7 @@ from app.editor.layering.layer_list import (
     toggle_visibility_key,
 )
 from app.editor.layering.layer_selection import set_active_layer
-from app.editor.timeline_view import TimeRangeView
+from app.editor.parts.timeline import TimeRangeView
 from app.editor.work.pending_change import PendingChange
 from app.solving import KeyResolver
 from app.storage.assets import sample_images
@@ -188,11 +188,11 @@ def test_layers_that_are_chosen_hidden_and_switched(window, tmp_path, check):
 def test_menus_messages_and_dialogs(window, tmp_path, check):
     session = window.session
     for tone in ("info", "good", "error"):
-        session.show_notice(f"A message that is {tone}.", tone=tone, details="Its details")
+        session.notices.show(f"A message that is {tone}.", tone=tone, details="Its details")
     session.hint = "A hint"
     editing.select_handles(session, frozenset({0, 1}))
     check("messages")
-    session.toasts = []
+    session.notices.toasts = []
 
     def open_menu(robot):
         robot.set_ref("##MainMenuBar")

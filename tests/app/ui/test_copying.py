@@ -55,10 +55,10 @@ def play(window, loose):
     assert loose is window.session.project
 
     def play(what):
-        window.session.toasts = []
+        window.session.notices.toasts = []
         window.run(lambda robot: what(Hand(window, robot)))
         window.settle()
-        return [toast.text for toast in window.session.toasts]
+        return [toast.text for toast in window.session.notices.toasts]
 
     return play
 
@@ -78,7 +78,7 @@ def test_over_the_drawing_the_pose_at_the_playhead_is_copied(window, loose, play
     message = play(copy)
     assert loose.selected_frames == {24}
     assert message == [f"Pose at frame {frame} copied."]
-    (copied,) = window.session.copied
+    (copied,) = window.session.clipboard.poses
     (key,) = copied.keys
     f = loose.layer.map_of(key.pose)
     places = np.array([handle.position for handle in loose.layer.handles])
@@ -100,7 +100,7 @@ def test_a_pose_that_is_copied_as_the_playhead_leaves_another_is_the_one_that_it
         hand.press(COPY)
 
     play(copy)
-    assert window.session.copied[0].keys[0].pose is loose.layer.key(0).pose
+    assert window.session.clipboard.poses[0].keys[0].pose is loose.layer.key(0).pose
 
 
 def test_in_the_timeline_the_chosen_keys_are_copied(window, loose, play):
@@ -112,7 +112,7 @@ def test_in_the_timeline_the_chosen_keys_are_copied(window, loose, play):
 
     assert play(copy) == [KEYS_COPIED.format(count=2)]
     assert loose.selected_frames == {0, 24}
-    (copied,) = window.session.copied
+    (copied,) = window.session.clipboard.poses
     assert copied.keys == loose.layer.keys
 
     def one(hand):
@@ -121,7 +121,7 @@ def test_in_the_timeline_the_chosen_keys_are_copied(window, loose, play):
         hand.press(COPY)
 
     assert play(one) == ["Pose at frame 0 copied."]
-    assert window.session.copied[0].keys == (loose.layer.key(0),)
+    assert window.session.clipboard.poses[0].keys == (loose.layer.key(0),)
 
 
 def test_where_the_pointer_is_in_neither_the_focus_tells(window, play):

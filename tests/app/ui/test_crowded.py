@@ -15,7 +15,7 @@ from app.document.layer import Handle
 from app.editor.actions import editing, frame_update
 from app.editor.actions.project_files import saving
 from app.editor.layering import layer_list
-from app.editor.timeline_view import TimeRangeView
+from app.editor.parts.timeline import TimeRangeView
 
 MANY = 4_000
 CORNERS = 18_000  # more than those of the rest of the window, at most: three full lanes

@@ -78,7 +78,7 @@ def test_where_nothing_is_cut_out_of_a_photo_the_brush_is_offered(window, tmp_pa
     Image.fromarray(rgb).save(tmp_path / "photo.png")
     project = window.open(tmp_path / "photo.png")
     assert kept(project).all()
-    (offer,) = (toast for toast in window.session.toasts if toast.label)
+    (offer,) = (toast for toast in window.session.notices.toasts if toast.label)
     assert "whole picture is the drawing" in offer.text
 
     def accept(robot):
@@ -95,7 +95,7 @@ def test_where_nothing_is_cut_out_of_a_photo_the_brush_is_offered(window, tmp_pa
 def test_where_a_background_was_removed_no_brush_is_offered(window, ring):
     assert not kept(window.open(ring)).all()
     # Only to open what it may show through.
-    assert [toast.label for toast in window.session.toasts if toast.label] == ["Show holes"]
+    assert [toast.label for toast in window.session.notices.toasts if toast.label] == ["Show holes"]
 
 
 def test_each_stroke_is_a_step_and_the_mesh_follows_when_the_brush_rests(window, drawing):
@@ -251,7 +251,7 @@ def test_a_mask_of_another_size_is_refused(window, drawing, tmp_path):
     window.act(cut_out_editing.load_mask, tmp_path / "small.png")
     window.settle()
     assert drawing.document is before
-    assert any("of the picture's size" in toast.text for toast in window.session.toasts)
+    assert any("of the picture's size" in toast.text for toast in window.session.notices.toasts)
 
 
 def test_impossible_cut_out_is_reported_and_undone(window, drawing):
@@ -264,7 +264,7 @@ def test_impossible_cut_out_is_reported_and_undone(window, drawing):
     rest(window)
     assert drawing.layer.is_stale
     assert drawing.layer.domain is domain
-    assert any(ALL_REMOVED in toast.text for toast in window.session.toasts)
+    assert any(ALL_REMOVED in toast.text for toast in window.session.notices.toasts)
     window.act(editing.undo)
     rest(window)
     assert not drawing.layer.is_stale
@@ -319,7 +319,7 @@ def test_a_click_opens_what_the_background_shows_through(window, tmp_path, colou
     Image.fromarray(opaque).save(tmp_path / "ring.png")
     project = window.open(tmp_path / "ring.png")
     assert len(project.layer.domain.holes) == first
-    offers = [toast for toast in window.session.toasts if toast.label]
+    offers = [toast for toast in window.session.notices.toasts if toast.label]
     assert len(offers) == 1 - first
     for offer in offers:
         window.run(
@@ -471,7 +471,7 @@ def test_a_line_of_the_knife_is_saved_taken_away_and_refused(window, boots, tmp_
     assert len(boots.layer.cut_out.cut_lines) == 1
     stroke(window, 3 + 60j, 117 + 62j)
     rest(window)
-    assert any(re.search(says(CUTS_OFF), toast.text) for toast in window.session.toasts)
+    assert any(re.search(says(CUTS_OFF), toast.text) for toast in window.session.notices.toasts)
     assert boots.layer.is_stale
     window.act(editing.undo)
     rest(window)
@@ -496,7 +496,7 @@ def test_a_line_of_the_knife_through_a_handle_is_refused_at_once(window, boots):
     stroke(window, 30 + 3j, 30 + 60j)
     assert boots.document is document
     name = boots.layer.handles[0].name
-    assert any(f"crosses {name}" in toast.text for toast in window.session.toasts)
+    assert any(f"crosses {name}" in toast.text for toast in window.session.notices.toasts)
     stroke(window, 33 + 3j, 33 + 60j)
     rest(window)
     assert boots.layer.domain.closed is not None

@@ -195,7 +195,7 @@ def test_keys_wait_before_what_repeats(window, cycling):
     window.run(lambda robot: Row(robot).drag("key 24", 40, 44, 70, 90))
     window.settle()
     assert frames_of(cycling) == [0, 44]
-    assert not window.session.toasts
+    assert not window.session.notices.toasts
     # All of its keys together take the cycle with them.
     editing.select_keys(window.session, frozenset({0, 44}))
     window.run(lambda robot: Row(robot, 44).drag("key 44", 50, 54))

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 from app.document.settings import ExportSettings
 from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.actions.timing import keys
-from app.editor.dialogs import FileDialog
+from app.editor.parts.dialogs import FileDialog
 from app.export_formats import EXPORT_FORMATS
 from app.storage import load_project
 
@@ -54,21 +54,21 @@ def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path)
 
     def press(robot):
         for _ in range(2):
-            seen.append((session.export_frame is not None, session.dialog is not None))
+            seen.append((session.export_frame is not None, session.dialogs.current is not None))
             robot.key_press(CTRL_E)
             robot.yield_(3)
 
     window.run(press)
     assert seen == [(False, False), (True, False)], "whether the tab is in front, and it asks where"
-    assert isinstance(session.dialog, FileDialog)
-    assert session.dialog.name == "bar.gif"
-    session.dialog = replace(session.dialog, folder=tmp_path)
+    assert isinstance(session.dialogs.current, FileDialog)
+    assert session.dialogs.current.name == "bar.gif"
+    session.dialogs.current = replace(session.dialogs.current, folder=tmp_path)
     window.run(lambda robot: robot.item_click("//###dialog/Export"))
     window.until(lambda: (tmp_path / "bar.gif").exists() and session.export is None)
     # To choose a place begins nothing.
     window.show_tab("Export")
     window.run(lambda robot: robot.item_click("//Export/**/###choose output"))
-    session.dialog = replace(session.dialog, folder=tmp_path)
+    session.dialogs.current = replace(session.dialogs.current, folder=tmp_path)
     # The field of the name takes what is typed, and nothing else meanwhile.
     window.run(lambda robot: robot.key_chars("other.gif"))
     window.run(lambda robot: robot.item_click("//###dialog/Choose"))
@@ -143,7 +143,7 @@ def test_another_format_of_the_same_name_asks_before_it_replaces(window, tmp_pat
     window.run(lambda robot: robot.item_click("//Export/**/###start"))
     window.settle()
     assert (tmp_path / "walk.png").read_bytes() == sheet
-    assert session.dialog.title == "Replace the file?"
+    assert session.dialogs.current.title == "Replace the file?"
 
 
 def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
@@ -175,7 +175,7 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
         window.clock.cost = 0.0
     window.frames()
     assert session.export is None
-    assert any(toast.text == exporting.CANCELLED_MIDWAY for toast in session.toasts)
+    assert any(toast.text == exporting.CANCELLED_MIDWAY for toast in session.notices.toasts)
     written.clear()
     window.frames(2)
     assert not any("walk frames" in text for text in written)

@@ -10,7 +10,7 @@ from PIL import Image
 
 from app.editor.action import do
 from app.editor.actions import viewing
-from app.editor.dialogs import FileDialog
+from app.editor.parts.dialogs import FileDialog
 from app.storage.assets import sample_images
 from app.ui.dialogs.browser_shortcuts import list_recent_shortcuts, list_standard_shortcuts
 from app.ui.dialogs.folder_listing import Entry, read_folder
@@ -109,20 +109,20 @@ def test_it_lists_folders_and_the_files_of_its_kinds(show, listed):
 def test_a_double_click_enters_a_folder_and_opens_a_file(window, show, folder, chosen):
     show()
     click(window, entry("drawings"))
-    assert window.session.dialog.folder == folder
+    assert window.session.dialogs.current.folder == folder
     click(window, entry("drawings"), double=True)
-    assert window.session.dialog.folder == folder / "drawings"
+    assert window.session.dialogs.current.folder == folder / "drawings"
     assert chosen == []
     click(window, entry("cow.png"), double=True)
     assert chosen == [folder / "drawings" / "cow.png"]
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     assert window.session.usual_folder == folder / "drawings"
 
 
 def test_a_click_marks_a_file_and_the_button_opens_it(window, show, folder, chosen):
     show()
     click(window, entry("bat.png"))
-    assert window.session.dialog.name == "bat.png"
+    assert window.session.dialogs.current.name == "bat.png"
     assert chosen == []
     click(window, "Open")
     assert chosen == [folder / "bat.png"]
@@ -131,7 +131,7 @@ def test_a_click_marks_a_file_and_the_button_opens_it(window, show, folder, chos
 def test_the_button_enters_a_marked_folder_where_one_reads(window, show, folder, chosen):
     show()
     click(window, entry("empty"), "Open")
-    assert window.session.dialog.folder == folder / "empty"
+    assert window.session.dialogs.current.folder == folder / "empty"
     assert chosen == []
 
 
@@ -141,29 +141,31 @@ def test_the_ways_up_and_home(window, show, folder, monkeypatch):
     monkeypatch.setenv("USERPROFILE", str(home))
     show()
     click(window, "###home")
-    assert window.session.dialog.folder == home
+    assert window.session.dialogs.current.folder == home
     click(window, "###up")
-    assert window.session.dialog.folder == folder
+    assert window.session.dialogs.current.folder == folder
     # Where one comes from is marked, to go back with Enter.
     press(window, window.Key.enter)
-    assert window.session.dialog.folder == home
+    assert window.session.dialogs.current.folder == home
     press(window, int(window.Key.mod_alt) | int(window.Key.up_arrow))
-    assert window.session.dialog.folder == folder
+    assert window.session.dialogs.current.folder == folder
     click(window, f"###in {len(folder.parts) - 1}")
-    assert window.session.dialog.folder == folder.parent
+    assert window.session.dialogs.current.folder == folder.parent
 
 
 def test_arrows_and_enter(window, show, folder, chosen):
     show()
     key = window.Key
     press(window, key.down_arrow)
-    assert window.session.dialog.marked == "drawings"
+    assert window.session.dialogs.current.marked == "drawings"
     press(window, key.up_arrow, key.down_arrow, key.down_arrow)
-    assert window.session.dialog.name == "Ant.PNG"  # folders first, capitals like small letters
+    assert (
+        window.session.dialogs.current.name == "Ant.PNG"
+    )  # folders first, capitals like small letters
     press(window, *[key.down_arrow] * 5)
-    assert window.session.dialog.name == "bat.png"
+    assert window.session.dialogs.current.name == "bat.png"
     press(window, key.up_arrow, key.up_arrow, key.up_arrow, key.enter)
-    assert window.session.dialog.folder == folder / "drawings"
+    assert window.session.dialogs.current.folder == folder / "drawings"
     press(window, key.up_arrow, key.enter)
     assert chosen == [folder / "drawings" / "cow.png"]
 
@@ -174,11 +176,11 @@ def test_the_columns_sort(window, show):
     def order():
         window.frames()
         names = []
-        window.session.dialog = None
+        window.session.dialogs.current = None
         show()
         for _ in range(4):
             press(window, window.Key.down_arrow)
-            names.append(window.session.dialog.marked)
+            names.append(window.session.dialogs.current.marked)
         return names
 
     assert order() == ["drawings", "empty", "Ant.PNG", "bat.png"]
@@ -201,7 +203,7 @@ def test_a_name_that_is_not_there_opens_nothing(window, show, chosen):
     show()
     for name in ("dog.png", "x" * 300, "../nowhere/bat.png"):
         type_name(window, name, enter=True)
-        assert window.session.dialog is not None
+        assert window.session.dialogs.current is not None
         show()
     assert chosen == []
 
@@ -209,8 +211,8 @@ def test_a_name_that_is_not_there_opens_nothing(window, show, chosen):
 def test_a_typed_path_leads_there(window, show, folder):
     show()
     type_name(window, "drawings/../drawings", enter=True)
-    assert window.session.dialog.folder == folder / "drawings"
-    assert window.session.dialog.name == ""
+    assert window.session.dialogs.current.folder == folder / "drawings"
+    assert window.session.dialogs.current.name == ""
 
 
 def test_saving_adds_the_suffix(window, show, folder, chosen):
@@ -225,8 +227,8 @@ def test_saving_adds_the_suffix(window, show, folder, chosen):
 def test_saving_keeps_its_name_while_one_looks_for_a_place(window, show, folder, chosen):
     show(title="Save", writes=True, name="walk", suffixes=(".png",))
     press(window, window.Key.down_arrow, window.Key.enter)
-    assert window.session.dialog.folder == folder / "drawings"
-    assert window.session.dialog.name == "walk"
+    assert window.session.dialogs.current.folder == folder / "drawings"
+    assert window.session.dialogs.current.name == "walk"
     click(window, "###up", entry("empty"), "Save")
     assert chosen == [folder / "walk.png"]
 
@@ -254,7 +256,7 @@ def test_a_marked_name_shows_in_the_field_that_is_being_typed_into(window, show,
     show(title="Save", writes=True, name="walk", suffixes=(".png",))
     type_name(window, "ru")
     press(window, window.Key.up_arrow)
-    assert window.session.dialog.name == "bat.png"
+    assert window.session.dialogs.current.name == "bat.png"
     # What is typed now goes on from there.
     type_name(window, ".png", enter=True)
     assert chosen == [folder / "bat.png.png"]
@@ -280,12 +282,12 @@ def test_a_folder_that_cannot_be_read_says_so(window, show, folder, monkeypatch)
     listing = read_folder(folder, (".png",))
     assert listing.problem == "This folder cannot be read: Permission denied"
     assert listing.entries == ()
-    assert window.session.toasts == []
+    assert window.session.notices.toasts == []
 
 
 def test_a_folder_that_is_gone_leaves_a_way_out(window, show, folder, listed):
     show(folder=folder / "gone")
-    assert window.session.toasts == []
+    assert window.session.notices.toasts == []
     click(window, "###up")
     assert listed("bat.png")
 
@@ -301,14 +303,14 @@ def test_new_files_appear_by_themselves(show, listed, folder):
 def test_escape_and_cancel_close_it(window, show, chosen):
     show()
     press(window, window.Key.escape)
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     show(name="bat.png", writes=True)
     type_name(window, "b")
     press(window, window.Key.escape)
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     show()
     click(window, "Cancel")
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     assert chosen == []
 
 
@@ -344,10 +346,10 @@ def test_places_and_recent_folders_are_one_click_away(window, show, folder, monk
     assert [place.folder for place in list_recent_shortcuts(recent)] == [folder / "drawings"]
     show()
     window.run(lambda robot: robot.item_click("//###dialog/**/###Places 2"))
-    assert session.dialog.folder == home / "Bilder"
+    assert session.dialogs.current.folder == home / "Bilder"
     assert listed("seal.png")
     window.run(lambda robot: robot.item_click("//###dialog/**/###Recent 0"))
-    assert session.dialog.folder == folder / "drawings"
+    assert session.dialogs.current.folder == folder / "drawings"
 
 
 def test_pictures_and_projects_show_as_they_are(window, show, folder):

@@ -15,7 +15,7 @@ from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
 from app.editor.actions.posing.pose_solver import POSING
 from app.editor.actions.project_files import autosaving, files, recovery, saving
-from app.editor.dialogs import Question
+from app.editor.parts.dialogs import Question
 from app.storage import decode_picture, project_file
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
@@ -46,7 +46,7 @@ def drop(window):
 
 
 def texts(window):
-    return [toast.text for toast in window.session.toasts]
+    return [toast.text for toast in window.session.notices.toasts]
 
 
 def change(window, project):
@@ -107,7 +107,7 @@ def test_of_other_dropped_files_the_first_that_can_be_opened_opens(window, drop,
 
 def test_a_picture_dropped_on_a_scene_may_become_a_layer(window, project, drop):
     drop(RING)
-    assert isinstance(window.session.dialog, Question)
+    assert isinstance(window.session.dialogs.current, Question)
     window.run(lambda robot: robot.item_click("//###dialog/New layer"))
     window.settle()
     assert window.session.project is project
@@ -142,7 +142,7 @@ def test_a_dropped_thing_that_cannot_be_opened_is_named(window, project, drop, t
     for path, reason in ((notes, "neither a picture nor a project"), (folder, "a folder")):
         drop(path)
         assert texts(window)[-1].startswith(f"{path.name} is {reason}")
-        assert window.session.dialog is None
+        assert window.session.dialogs.current is None
     drop()
     assert len(texts(window)) == 2
     foreign = tmp_path / "walk.xcf"
@@ -159,7 +159,7 @@ def test_changes_are_asked_about_before_a_dropped_file_opens(window, project, dr
         drop(RING)
         window.run(lambda robot: robot.item_click("//###dialog/New scene"))
         window.settle()
-        assert isinstance(window.session.dialog, Question)
+        assert isinstance(window.session.dialogs.current, Question)
         assert window.session.project is project
         window.run(lambda robot, answer=answer: robot.item_click(f"//###dialog/{answer}"))
     window.settle()
@@ -169,12 +169,12 @@ def test_changes_are_asked_about_before_a_dropped_file_opens(window, project, dr
 def test_changes_made_while_a_file_is_read_are_asked_about(window, project):
     with window.session.jobs.held():
         window.act(files.open_file, RING)
-        assert window.session.dialog is None
+        assert window.session.dialogs.current is None
         window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     assert window.session.project is project
     assert len(project.layer.handles) == 1
-    assert isinstance(window.session.dialog, Question)
+    assert isinstance(window.session.dialogs.current, Question)
     window.run(lambda robot: robot.item_click("//###dialog/Don't save"))
     assert window.session.project.name == "ring"
 
@@ -187,7 +187,7 @@ def test_changes_made_while_unsaved_work_is_read_are_asked_about(window, project
         window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     assert window.session.project is project
-    assert isinstance(window.session.dialog, Question)
+    assert isinstance(window.session.dialogs.current, Question)
     window.run(lambda robot: robot.item_click("//###dialog/Cancel"))
     assert path.exists()
 
@@ -205,7 +205,7 @@ def test_changes_made_while_the_project_is_saved_are_asked_about(window, project
     assert window.session.project is project
     assert not window.session.is_quitting
     assert len(project.layer.handles) == 2
-    assert isinstance(window.session.dialog, Question)
+    assert isinstance(window.session.dialogs.current, Question)
     window.run(lambda robot: robot.item_click("//###dialog/Save"))
     window.settle()
     assert len(load_project(tmp_path / "bar.lissom").layers[0].handles) == 2
@@ -308,7 +308,7 @@ def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, t
     assert saved.pose.targets == now.pose.targets
     assert (saved.pose.psi == now.pose.psi).all()
     window.act(saving.request_quit)
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     window.session.is_quitting = False
 
 

@@ -108,7 +108,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     source = np.asarray(Image.open(BAR).convert("RGBA"))
     opaque = source[..., 3] >= 8
     np.testing.assert_array_equal(last[opaque], source[opaque])
-    assert "Open folder" in [toast.label for toast in session.toasts]
+    assert "Open folder" in [toast.label for toast in session.notices.toasts]
 
     for _ in range(4):
         window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.z)))
@@ -120,7 +120,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
 
 def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
     session = window.session
-    session.solver_seconds = 0.0
+    session.diagnostics.solver_seconds = 0.0
     monkeypatch.setattr(window.clock, "cost", 1e-4)
     start = handle_places(bar)[1]
     before = bar.document
@@ -130,7 +130,7 @@ def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
     lag = bar.document.layers[0].target_errors(bar.document.layers[0].keys[0].pose)[1]
     assert lag < 0.05 * abs(150j)
     # It is looked at before the steps and after.
-    assert session.solver_seconds >= 0.999 * window.clock.cost
+    assert session.diagnostics.solver_seconds >= 0.999 * window.clock.cost
     editing.undo(session)
     assert bar.document is before
 
@@ -303,7 +303,7 @@ def test_inserting_a_key_where_there_is_one_says_so(window, bar):
     before = bar.document
     window.run(lambda robot: robot.key_press(int(window.Key.i)))
     assert bar.document is before
-    (toast,) = window.session.toasts
+    (toast,) = window.session.notices.toasts
     assert toast.text == "Frame 0 has a key already. Drag a handle to change it."
 
 
@@ -586,7 +586,7 @@ def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
         robot.item_click("Cancel")
 
     window.run(decline)
-    assert session.dialog is None
+    assert session.dialogs.current is None
     assert session.project is bar
     bar.path = tmp_path / "kept.lissom"
     saving.save_then(session, do(saving.discard_project))

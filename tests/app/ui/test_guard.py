@@ -7,7 +7,7 @@ from imgui_bundle import imgui, implot
 
 from app.document.commands import scene_commands
 from app.editor.actions import editing, playback, viewing
-from app.editor.dialogs import Question
+from app.editor.parts.dialogs import Question
 from app.ui.viewport import viewport
 from app.ui.window import guard
 from app.ui.window.guard import FrameStep, format_failure
@@ -75,8 +75,8 @@ def parts(window, capfd):
     for name, draw in before.items():
         parts[name].draw = draw
         parts[name].try_again()
-    window.session.toasts = []
-    window.session.dialog = None
+    window.session.notices.toasts = []
+    window.session.dialogs.current = None
     window.frames(3)
     capfd.readouterr()
 
@@ -104,7 +104,7 @@ def test_failing_panel_shows_a_notice_and_is_asked_once(window, parts, reported,
     assert broken.asked == 1
     assert format_failure(name) in reported
     assert "a bug" in parts[name].failure.trace
-    (toast,) = window.session.toasts
+    (toast,) = window.session.notices.toasts
     assert toast.text == format_failure(name)
     assert "a bug" in toast.details
     assert all(part.failure is None for other, part in parts.items() if other != name)
@@ -134,7 +134,7 @@ def test_all_parts_can_fail_at_once_and_come_back(window, parts):
     draws = {name: part.draw for name, part in parts.items()}
     for part in parts.values():
         part.draw = Broken()
-    window.session.dialog = Question(title="Well", text="Well?", answers=())
+    window.session.dialogs.current = Question(title="Well", text="Well?", answers=())
     window.frames(FRAMES)
     seen = [part.draw.asked for part in parts.values() if part.failure is not None]
     assert set(seen) == {1}
@@ -223,10 +223,10 @@ def test_failing_menu_of_a_handle_leaves_nothing_open(window, parts, bar, monkey
 
 def test_failing_dialog_can_be_closed(window, parts):
     parts["The dialog"].draw = Broken()
-    window.session.dialog = Question(title="Well", text="Well?", answers=())
+    window.session.dialogs.current = Question(title="Well", text="Well?", answers=())
     window.frames(3)
     window.run(lambda robot: robot.item_click(f"**/{guard.CLOSE}"))
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
 
 
 @pytest.mark.usefixtures("bar")

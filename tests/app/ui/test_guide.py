@@ -72,7 +72,7 @@ def led(window, pupil):
     """Somebody who is led through an animation of the bar, at the first step."""
     window.frames(10)
     pupil.click("//Welcome/**/…or with your own drawing")
-    dialog = window.session.dialog
+    dialog = window.session.dialogs.current
     window.act(viewing.choose_file, dialog, sample_images() / "bar.png")
     window.settle()
     assert pupil.step == "handle"
@@ -234,7 +234,7 @@ def test_a_drawing_that_is_not_chosen_is_not_waited_for(window, pupil):
     pupil.click("//Welcome/**/…or with your own drawing")
     window.run(lambda robot: robot.key_press(window.Key.escape))
     window.frames(2)
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     assert pupil.step == ""
     window.open(sample_images() / "bar.png")
     assert pupil.step == ""

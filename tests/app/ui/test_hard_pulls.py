@@ -26,7 +26,7 @@ def places(bar):
 
 
 def texts(window):
-    return [toast.text for toast in window.session.toasts if "stopped" in toast.text]
+    return [toast.text for toast in window.session.notices.toasts if "stopped" in toast.text]
 
 
 def drag(window, bar, way, *, key=None):

@@ -1,7 +1,7 @@
 """A window in which nothing changes does next to nothing, however many layers there are."""
 
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pytest
@@ -19,7 +19,7 @@ from app.document import (
 from app.editor.actions import editing, playback
 from app.editor.actions.project_files import saving
 from app.editor.work.jobs import Jobs
-from app.editor.work.revised import Revised
+from app.editor.work.revised import Revised, revision_getter
 from app.ui.viewport.canvas import Canvas
 from app.ui.window.window_frame import WindowFrame
 
@@ -107,17 +107,32 @@ def test_changed_look_of_a_layer_starts_no_job_of_its_motion(window, bent, monke
     assert jobs
 
 
+@dataclass(slots=True, kw_only=True, eq=False)
 class Part(Revised):
-    __slots__ = ("points", "revision", "size")
+    points: list = field(default_factory=list)
+    size: int = 0
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Whole(Revised):
+    part: Part = field(default_factory=Part)
 
 
 def test_revision_counts_changes_of_values_only():
-    part = Part()
-    part.revision = 0
+    part = Part(size=2)
+    before = part.revision
     part.size, part.points = 3, [1]
-    assert part.revision == 2
+    assert part.revision == before + 2
     part.size, part.points = 3, part.points
-    assert part.revision == 2
+    assert part.revision == before + 2
     part.size = 4
     part.points = [1]
-    assert part.revision == 4
+    assert part.revision == before + 4
+
+
+def test_revisions_of_a_whole_count_changes_of_its_parts():
+    whole, revisions = Whole(), revision_getter(Whole)
+    before = revisions(whole)
+    assert revisions(whole) == before
+    whole.part.size = 1
+    assert revisions(whole) != before

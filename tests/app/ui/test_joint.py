@@ -188,7 +188,7 @@ def test_esc_and_a_drop_beside_all_layers_leave_it_as_it_was(window, scene, drag
     assert window.session.active_tool is None
     drag(HIP, BESIDE)
     assert scene.document is before
-    assert "over another layer" in window.session.toasts[-1].text
+    assert "over another layer" in window.session.notices.toasts[-1].text
 
 
 def test_a_circle_is_refused_in_words(window, scene, drag):
@@ -204,10 +204,10 @@ def test_a_circle_is_refused_in_words(window, scene, drag):
     hints = drag(212 + 120j)
     assert "is attached to body and cannot be its parent" in hints[-1]
     assert scene.document is before
-    assert window.session.toasts[-1].tone == "error"
+    assert window.session.notices.toasts[-1].tone == "error"
     assert re.search(
         says(PARENT_IS_DESCENDANT, name="hand", parent="body"),
-        window.session.toasts[-1].text,
+        window.session.notices.toasts[-1].text,
     )
 
 

@@ -47,7 +47,7 @@ def press(window, *keys):
 def test_enter_gives_the_first_answer(window, asked, key):
     press(window, key)
     assert asked == ["Save"]
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
 
 
 @pytest.mark.parametrize("key", [imgui.Key.tab, imgui.Key.right_arrow])
@@ -58,10 +58,10 @@ def test_keys_lead_to_the_other_answers(window, asked, key):
 
 def test_keys_lead_to_cancel_and_escape_is_cancel(window, asked):
     press(window, imgui.Key.tab, imgui.Key.tab, imgui.Key.enter)
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     window.act(show_dialog, Question(title="Again", text="?", answers=()))
     press(window, imgui.Key.escape)
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     assert asked == []
 
 
@@ -244,7 +244,7 @@ def test_recent_files_that_are_gone_are_marked_and_taken_off_by_a_click(window, 
     window.settle()
     assert window.session.project is None
     assert window.session.preferences.recent == (there,)
-    (toast,) = window.session.toasts
+    (toast,) = window.session.notices.toasts
     assert toast.text.startswith(f"gone.png is no longer in {tmp_path}.")
 
     def open_recent(robot):

@@ -426,7 +426,7 @@ def test_all_keys_are_deleted_but_the_first_pose_key_of_each_layer(window, proje
 
     after = play(delete)
     assert all_keys(after) == {pose_channel(layer.id): {0} for layer in before.layers}
-    (notice,) = (toast.text for toast in window.session.toasts)
+    (notice,) = (toast.text for toast in window.session.notices.toasts)
     names = ", ".join(repr(layer.name) for layer in before.layers)
     assert re.fullmatch(says(FIRST_KEY_STAYS, layers=names), notice)
     window.act(editing.undo)

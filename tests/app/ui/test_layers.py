@@ -54,8 +54,8 @@ from app.editor.layering.pictures import (
     make_still,
     replace_picture,
 )
+from app.editor.parts.timeline import TimeRangeView
 from app.editor.poses import pasting
-from app.editor.timeline_view import TimeRangeView
 from app.errors import EMPTY_IMPORT_LOG
 from app.motion import ParentTransforms
 from app.storage import load_project, save_project
@@ -94,7 +94,7 @@ def scene(window, drawing):
 
 
 def test_layers_are_offered_as_one_picture(window, scene):
-    (offer,) = (toast for toast in window.session.toasts if toast.label == ONE_PICTURE)
+    (offer,) = (toast for toast in window.session.notices.toasts if toast.label == ONE_PICTURE)
     window.act(offer.action.apply)
     window.settle()
     merged = window.session.project
@@ -295,7 +295,7 @@ def test_the_menu_of_a_layer(window, scene, listed):
     layer = scene.document.layer(body)
     assert (layer.hidden, layer.locked, layer.reference) == (False, False, False)
     listed(lambda rows: rows.menu(arm, "Replace picture…"))
-    assert window.session.dialog.title == "Replace the picture of arm"
+    assert window.session.dialogs.current.title == "Replace the picture of arm"
     window.act(close_dialog)
     # Undo attaches the children of a deleted layer to it again.
     joint = Attachment(parent=body, parent_point=95 + 118j)
@@ -317,9 +317,9 @@ def test_a_layer_is_seen_at_once_where_its_in_betweens_are_not_there_yet(window,
     arm = identity(keyed, "arm")
     window.act(playback.seek, 6)
     window.settle()
-    window.session.toasts = []
+    window.session.notices.toasts = []
     window.act(duplicate_layer, arm)
-    assert not window.session.toasts
+    assert not window.session.notices.toasts
     assert keyed.layer_runtime.shown is not None
     assert keyed.layer.name == "arm copy"
     window.act(delete_layers, keyed.active)
@@ -362,7 +362,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     hat = saved(tmp_path / "hat.png", blob(90, 60, (250, 220, 0)))
     cap = saved(tmp_path / "cap.png", blob(80, 50))
     window.act(drop_files, [hat])
-    question = window.session.dialog
+    question = window.session.dialogs.current
     assert [text for text, _ in question.answers] == ["New layer", "Replace arm", "New scene"]
     # Enter takes the first one.
     window.frames(3)
@@ -374,12 +374,12 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
 
     def over(rows):
         rows.robot.mouse_move(f"**/###row {body}")
-        window.session.dialog = None
+        window.session.dialogs.current = None
         window.program.queue_action(do(drop_files, [cap]))
         rows.robot.yield_(3)
 
     listed(over)
-    texts = [text for text, _ in window.session.dialog.answers]
+    texts = [text for text, _ in window.session.dialogs.current.answers]
     assert texts == ["Replace body", "New layer", "New scene"]
     window.run(enter)
     window.settle()
@@ -390,7 +390,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     assert scene.document is before
     # Several at once, and a drawing on layers, are one step.
     window.act(drop_files, [hat, cap, drawing])
-    texts = [text for text, _ in window.session.dialog.answers]
+    texts = [text for text, _ in window.session.dialogs.current.answers]
     assert texts == ["New layers", "New scene"]
     window.run(enter)
     window.settle()
@@ -398,7 +398,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     assert names == ["wall", "body", "arm", "hat", "cap", "wall 2", "body 2", "arm 2"]
     window.act(editing.undo)
     assert scene.document is before
-    window.session.toasts = []
+    window.session.notices.toasts = []
 
 
 def test_attached_layer_follows_live_and_poses_around_its_joint(window, scene):
@@ -969,10 +969,10 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
     before = scene.document
     empty = saved(tmp_path / "empty.png", Image.new("RGBA", (60, 50)))
     for path, reason in ((empty, "there is no shape on it"), (tmp_path / "none.png", "none.png")):
-        window.session.toasts = []
+        window.session.notices.toasts = []
         window.act(replace_picture, arm, path)
         window.settle()
-        (toast,) = window.session.toasts
+        (toast,) = window.session.notices.toasts
         assert toast.text.startswith("The picture of arm was not replaced")
         assert reason in toast.text
     assert scene.document is before
@@ -982,7 +982,7 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
     window.settle()
     assert scene.document.layer(wall).still
     assert pixel(window, 20 + 20j) == (90, 160, 250)
-    window.session.toasts = []
+    window.session.notices.toasts = []
 
 
 def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scene, tmp_path):
@@ -1031,7 +1031,7 @@ def stranger(tmp_path_factory):
 
 def test_import_log_stays_in_the_panel(window, stranger):
     project = window.again(Harness.open, stranger)
-    (toast,) = (toast for toast in window.session.toasts if toast.topic == "import")
+    (toast,) = (toast for toast in window.session.notices.toasts if toast.topic == "import")
     assert "One thing looks different here" in toast.text
     log = project.document.import_log
     assert log.warnings == ("shine, glow: drawn normally, not in the mode 'vivid-light'",)
@@ -1058,10 +1058,10 @@ def test_import_log_is_saved_and_not_shown_again(window, stranger, tmp_path):
     document = window.again(Harness.open, stranger).document
     path = tmp_path / "log.lissom"
     save_project(path, document)
-    window.session.toasts = []
+    window.session.notices.toasts = []
     project = window.open(path)
     assert project.document.import_log == document.import_log != EMPTY_IMPORT_LOG
-    assert not window.session.toasts
+    assert not window.session.notices.toasts
     assert not project.is_import_log_open
     window.show_tab("Handle")
     BINDINGS["import"].action.apply(window.session)
@@ -1078,7 +1078,7 @@ def test_import_log_of_added_layers_is_undone_with_them(window, scene, stranger)
     assert losses == ("shine, glow: drawn normally, not in the mode 'vivid-light'",)
     window.act(editing.undo)
     assert scene.document.import_log == before
-    window.session.toasts = []
+    window.session.notices.toasts = []
 
 
 def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):

@@ -34,7 +34,7 @@ def press(window):
 def test_without_a_drawing_it_opens_the_first_page_and_tells_where_it_lies(window, browser):
     press(window)
     assert browser.opened == [manual_page().as_uri()]
-    assert str(manual_page()) in window.session.toasts[-1].text
+    assert str(manual_page()) in window.session.notices.toasts[-1].text
 
 
 def test_it_opens_the_page_of_the_tool_in_hand_or_else_of_the_tab(window, bar, browser):
@@ -56,6 +56,6 @@ def test_without_a_browser_it_tells_where_the_page_lies(window, monkeypatch, kin
     monkeypatch.delenv("BROWSER", raising=False)
     monkeypatch.setattr(webbrowser, "get", get)
     window.act(viewing.open_manual, "layers")
-    (toast,) = window.session.toasts
+    (toast,) = window.session.notices.toasts
     assert "No browser was found" in toast.text
     assert str(manual_page("layers")) in toast.text

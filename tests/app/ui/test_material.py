@@ -84,7 +84,7 @@ def test_a_brush_that_reaches_no_outline_says_so(window, tab):
     tab.brush = 1.0
     stiffness_editing.paint_stiffness(window.session, [middle(tab)])
     assert tab.layer.stiffness is None
-    assert "reaches no outline" in window.session.toasts[-1].text
+    assert "reaches no outline" in window.session.notices.toasts[-1].text
 
 
 def test_a_bone_is_drawn_from_handle_to_handle(window, tab):
@@ -95,7 +95,7 @@ def test_a_bone_is_drawn_from_handle_to_handle(window, tab):
     assert len(tab.layer.bones) == 1, "it ends at no handle"
     drag(window, [place_of(tab, ENDS[1]), place_of(tab, ENDS[0])])
     assert len(tab.layer.bones) == 1
-    assert "already" in window.session.toasts[-1].text
+    assert "already" in window.session.notices.toasts[-1].text
     assert window.session.is_posing is False
     move_tool.return_to_posing(window.session)
     assert window.session.is_posing
@@ -164,7 +164,7 @@ def test_a_key_follows_the_new_material_when_it_is_posed_again(window, tab):
 
 def test_names_suggest_what_is_stiff_and_what_is_soft(window, tab):
     stiffness_editing.suggest_stiffness(window.session)
-    assert "No handle is named" in window.session.toasts[-1].text
+    assert "No handle is named" in window.session.notices.toasts[-1].text
     editing.edit_layer(window.session, handle_commands.rename_handle, ENDS[0], "Left Hand")
     editing.edit_layer(window.session, handle_commands.rename_handle, ENDS[1], "tail tip")
     before = tab.document

@@ -94,7 +94,7 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     assert project.document is before, "nothing is done to it yet"
     click(window, "//Motion/**/###give")
     arrive(window, project)
-    assert project.layer.motions, [toast.text for toast in window.session.toasts]
+    assert project.layer.motions, [toast.text for toast in window.session.notices.toasts]
     assert project.playhead.since is not None, "it plays"
     assert project.document.loop
     (given,) = project.layer.motions
@@ -257,4 +257,4 @@ def test_a_change_meanwhile_refuses_it(window, ghost):
     changed = ghost.document
     arrive(window, ghost)
     assert ghost.document is changed
-    assert "the drawing changed meanwhile" in window.session.toasts[-1].text
+    assert "the drawing changed meanwhile" in window.session.notices.toasts[-1].text

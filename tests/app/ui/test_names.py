@@ -14,7 +14,7 @@ from app.editor.action import do
 from app.editor.actions import viewing
 from app.editor.actions.project_files import export_settings, files, recovery, saving
 from app.editor.actions.timing import keys
-from app.editor.dialogs import FileDialog
+from app.editor.parts.dialogs import FileDialog
 from app.storage.assets import sample_images
 from app.storage.autosave import Autosave, SourceInfo
 from app.storage.preferences import load_preferences
@@ -43,7 +43,7 @@ def opened(window, folder):
 def messages(window):
     """Return the messages, after some frames in which errors of drawing appear, too."""
     window.frames(3)
-    return [toast.text for toast in window.session.toasts]
+    return [toast.text for toast in window.session.notices.toasts]
 
 
 def press(window, *names):
@@ -94,7 +94,7 @@ def test_failures_and_questions_tell_the_name(window, folder):
     window.settle()
     window.act(keys.set_last_frame, 7)
     window.act(saving.close_project)
-    assert window.session.dialog is not None
+    assert window.session.dialogs.current is not None
     window.run(lambda robot: robot.item_click("//###dialog/Don't save"))
     assert window.session.project is None
     assert len(messages(window)) == 3
@@ -106,7 +106,7 @@ def test_unsaved_work_is_offered_under_the_name(window, opened, folder):
     os.close(left._lock)  # as the system does when its process ends
     window.act(saving.discard_project)
     window.act(recovery.ask_recovery)
-    (candidate,) = window.session.dialog.candidates
+    (candidate,) = window.session.dialogs.current.candidates
     assert candidate.origin == SourceInfo(SHOWN, folder / f"{NAME}.lissom")
     assert messages(window) == []
     window.run(lambda robot: robot.item_click("//###dialog/**/Open"))
@@ -146,7 +146,7 @@ def test_an_export_goes_there(window, folder, kind, ending):
     window.act(export_settings.set_export_settings, ExportSettings(format=kind))
     window.show_tab("Export")
     window.act(export_settings.start_export_at, folder / name)
-    window.until(lambda: window.session.toasts)
+    window.until(lambda: window.session.notices.toasts)
     assert messages(window)[0].startswith("Exported ")
     assert (folder / name).exists()
 

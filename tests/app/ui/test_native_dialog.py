@@ -12,7 +12,7 @@ from app.editor.action import do
 from app.editor.actions import viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.project_files import files, saving
-from app.editor.dialogs import FileDialog, Question
+from app.editor.parts.dialogs import FileDialog, Question
 from app.storage.assets import sample_images
 from app.ui.dialogs import native_dialog
 
@@ -50,12 +50,12 @@ class Program:
 
     def wait_for_the_window(self):
         """Draw frames until the window has the answer, with the clock as it is."""
-        now, dialog = self.window.clock.now, self.window.session.dialog
+        now, dialog = self.window.clock.now, self.window.session.dialogs.current
 
         def is_answered():
             self.window.clock.now = now
             session = self.window.session
-            return session.dialog is not dialog or not session.system_dialogs
+            return session.dialogs.current is not dialog or not session.dialogs.uses_system
 
         self._wait(is_answered)
 
@@ -76,12 +76,12 @@ def program(window, tmp_path, monkeypatch):
     script.chmod(0o755)
     monkeypatch.setenv("PATH", f"{place}:/usr/bin:/bin")
     monkeypatch.setenv("XDG_SESSION_DESKTOP", "gnome")
-    window.session.system_dialogs = native_dialog.find_system_dialogs() is not None
-    assert window.session.system_dialogs
+    window.session.dialogs.uses_system = native_dialog.find_system_dialogs() is not None
+    assert window.session.dialogs.uses_system
     program = Program(window, place)
     yield program
     # Nothing may be left running.
-    window.session.dialog = None
+    window.session.dialogs.current = None
     window.frames()
     program.answer("")
 
@@ -133,7 +133,7 @@ def test_a_picture_is_opened_and_the_window_does_not_wait(window, program):
     assert window.session.project is None
     program.answer(f"{sample_images() / 'bar.png'}\n")
     program.wait_for_the_window()
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     window.settle()
     assert window.session.project.name == "bar"
     assert window.session.usual_folder == sample_images()
@@ -160,11 +160,11 @@ def test_a_name_that_its_suffix_makes_an_existing_one_is_asked_about(
     program.answer(f"{tmp_path}/run\n")
     program.wait_for_the_window()
     assert chosen == []
-    assert isinstance(window.session.dialog, Question)
-    assert "run.png" in window.session.dialog.text
+    assert isinstance(window.session.dialogs.current, Question)
+    assert "run.png" in window.session.dialogs.current.text
     window.run(lambda robot: robot.item_click("//###dialog/Replace"))
     assert chosen == [tmp_path / "run.png"]
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
 
 
 def test_frames_land_in_a_folder_of_their_own_where_other_files_are(program, ask, chosen, tmp_path):
@@ -195,8 +195,8 @@ def test_a_name_that_is_not_utf_8_is_left_to_our_own_browser(
     assert f"--filename={tmp_path}/caf\N{REPLACEMENT CHARACTER}/" in " ".join(program.asked())
     program.answer(os.fsdecode(b"/caf\xe9.png"))
     program.wait_for_the_window()
-    assert not window.session.system_dialogs
-    assert isinstance(window.session.dialog, FileDialog)
+    assert not window.session.dialogs.uses_system
+    assert isinstance(window.session.dialogs.current, FileDialog)
     assert chosen == []
 
 
@@ -207,8 +207,8 @@ def test_cancelling_the_dialog_closes_it(window, program, ask, chosen):
     window.frames(3)
     program.answer("", status=1)
     program.wait_for_the_window()
-    assert window.session.dialog is None
-    assert window.session.system_dialogs
+    assert window.session.dialogs.current is None
+    assert window.session.dialogs.uses_system
     assert chosen == []
 
 
@@ -218,7 +218,7 @@ def test_a_program_that_cannot_show_anything_is_replaced_by_our_browser(
     program.answer("", status=255)
     ask()
     program.wait_for_the_window()
-    assert isinstance(window.session.dialog, FileDialog)
+    assert isinstance(window.session.dialogs.current, FileDialog)
     window.frames(2)
     window.run(lambda robot: robot.item_click("//###dialog/Save"))
     assert chosen == [tmp_path / "walk.png"]
@@ -243,7 +243,7 @@ def test_window_can_cancel_a_dialog_that_never_answers(window, program, ask, cho
     else:
         window.run(lambda robot: robot.key_press(int(window.Key.escape)))
     window.frames(2)
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     assert not is_running(program)
     assert chosen == []
 
@@ -255,7 +255,7 @@ def test_a_question_that_comes_up_takes_the_dialog_away(window, program, ask):
     program.asked()
     window.act(saving.request_quit)
     window.frames(2)
-    assert isinstance(window.session.dialog, Question)
+    assert isinstance(window.session.dialogs.current, Question)
     assert not is_running(program)
     assert not window.session.is_quitting
 

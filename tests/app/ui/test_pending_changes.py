@@ -20,10 +20,10 @@ from app.editor.actions.posing.pose_drag import cancel_drag, release_drag, set_t
 from app.editor.actions.posing.pose_solver import POSING, is_display_final
 from app.editor.actions.project_files import exporting, saving
 from app.editor.actions.timing import keys
-from app.editor.dialogs import Question
 from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.pictures import add_layers, make_still
+from app.editor.parts.dialogs import Question
 from app.editor.poses import copying, library, pasting
 from app.storage import load_project
 from engine.maps import Bounds
@@ -187,12 +187,12 @@ def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, lo
     exporting.start_export(session, tmp_path / "a.png")
     assert loose.deferred
     exporting.start_export(session, tmp_path / "b.png")
-    assert "An export is running." in session.toasts[-1].text
+    assert "An export is running." in session.notices.toasts[-1].text
     saving.request_quit(session)
     assert question(window).title == "An export is running"
-    session.dialog = None
+    session.dialogs.current = None
     exporting.cancel_export(session)
-    assert session.toasts[-1].text == "The export was cancelled. Nothing was written."
+    assert session.notices.toasts[-1].text == "The export was cancelled. Nothing was written."
     window.settle()
     assert [path.name for path in tmp_path.iterdir()] == ["before.png"]
     check_at_rest(loose.document, goal)
@@ -209,19 +209,19 @@ def test_copying_the_picture_leaves_an_export_alone_that_is_prepared(
         exporting.start_export(window.session, tmp_path / "a.gif")
         window.frames()
         exporting.copy_picture(window.session)
-        assert window.session.toasts[-1].text == exporting.UNDER_WAY
+        assert window.session.notices.toasts[-1].text == exporting.UNDER_WAY
     window.until(lambda: (tmp_path / "a.gif").exists() and window.session.export is None)
 
 
 def question(window):
-    dialog = window.session.dialog
+    dialog = window.session.dialogs.current
     return dialog if isinstance(dialog, Question) else None
 
 
 def answer(window):
     """Let the question be answered by its first answer."""
     _, action = question(window).answers[0]
-    window.session.dialog = None
+    window.session.dialogs.current = None
     action.apply(window.session)
 
 
@@ -283,7 +283,7 @@ def test_second_close_asks_at_once(window, loose, tmp_path):
         assert question(window) is None
         saving.close_project(window.session)
         assert saving.NOT_FINISHED.format(tasks=INSERTING.label) in question(window).text
-    window.session.dialog = None
+    window.session.dialogs.current = None
     window.settle()
     assert window.session.project is loose
 
@@ -319,7 +319,7 @@ def test_two_keys_that_are_inserted_at_once_both_come(window, loose):
             playback.scrub(window.session, frame)
             insert_key(window.session)
     window.settle()
-    texts = [toast.text for toast in window.session.toasts]
+    texts = [toast.text for toast in window.session.notices.toasts]
     assert loose.layer.key_frames == {0, 7, 14, 24}, texts
 
 
@@ -362,7 +362,7 @@ def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, l
     before = loose.document
     loose.selected_handles = frozenset({added})
     mirror_handles(window.session)
-    assert len(loose.layer.handles) == 4, [toast.text for toast in window.session.toasts]
+    assert len(loose.layer.handles) == 4, [toast.text for toast in window.session.notices.toasts]
     editing.undo(window.session)
     assert loose.document is before
 

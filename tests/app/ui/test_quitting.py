@@ -9,7 +9,7 @@ from app.document.keyframe import Target
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.project_files import saving
-from app.editor.dialogs import Question
+from app.editor.parts.dialogs import Question
 from app.storage import NO_FOLDER
 from app.storage.project_file import load_project
 
@@ -40,7 +40,7 @@ def quit_lissom(window):
 
 
 def question(window):
-    dialog = window.session.dialog
+    dialog = window.session.dialogs.current
     return dialog.title if isinstance(dialog, Question) else None
 
 
@@ -105,7 +105,8 @@ def test_a_save_that_fails_ends_nothing(window, saved):
     window.settle()
     assert not window.session.is_quitting
     assert any(
-        NO_FOLDER.format(folder=saved.parent) in toast.text for toast in window.session.toasts
+        NO_FOLDER.format(folder=saved.parent) in toast.text
+        for toast in window.session.notices.toasts
     )
     quit_lissom(window)
     assert question(window) == saving.UNSAVED

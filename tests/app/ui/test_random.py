@@ -86,8 +86,8 @@ from app.editor.layering.parenting import (
 )
 from app.editor.layering.pictures import add_layers, make_posable, make_still
 from app.editor.layering.switches import create_switch, delete_switch
+from app.editor.parts.timeline import TimeRangeView
 from app.editor.poses import copying, flipping, library, pasting
-from app.editor.timeline_view import TimeRangeView
 from app.editor.work import pull
 from app.editor.work.jobs import JobKind, Jobs
 from app.export_formats import EXPORT_FORMATS
@@ -235,7 +235,7 @@ class Walk:
 
     def step(self, number: int) -> None:
         """Do one thing, let some frames pass, and see whether all is well."""
-        if self.session.dialog is not None:
+        if self.session.dialogs.current is not None:
             self.press(int(imgui.Key.escape))
         elif self.is_down and self.rng.random() < 0.8:
             self.pick(HOLDING)
@@ -836,7 +836,7 @@ class Walk:
 
     def look(self, *, thorough: bool, saves: bool) -> None:
         session, project = self.session, self.project
-        surprises = [toast.details for toast in session.toasts if toast.details]
+        surprises = [toast.details for toast in session.notices.toasts if toast.details]
         assert not surprises, surprises[0]
         assert session.project is project
         if thorough:

@@ -8,7 +8,7 @@ import pytest
 from app.editor import error_reports
 from app.editor.actions import viewing
 from app.editor.actions.project_files import recovery
-from app.editor.dialogs import FileDialog, ProblemReport, RecoveryDialog
+from app.editor.parts.dialogs import FileDialog, ProblemReport, RecoveryDialog
 from app.reports import format_trace
 from app.storage.autosave import Autosave, load_report, write_report
 from app.ui.timeline import timeline
@@ -56,7 +56,7 @@ def broken(window, bar, monkeypatch):
         patch.setattr(timeline, "draw_transport_bar", fail)
         window.frames(2)
     yield bar
-    window.session.toasts = []
+    window.session.notices.toasts = []
 
 
 @pytest.mark.usefixtures("broken")
@@ -65,19 +65,19 @@ def test_a_bug_offers_a_report_that_is_shown_changed_and_saved(window, tmp_path,
     window.act(viewing.toggle_overlay, "outline")
     window.run(lambda robot: robot.item_click("//##toast0/Report…"))
     window.frames(2)
-    report = session.dialog
+    report = session.dialogs.current
     assert isinstance(report, ProblemReport)
     assert "viewing.toggle" in report.text
     assert "ZeroDivisionError: a bug with …" in report.text
-    assert session.graphics in report.text
+    assert session.diagnostics.graphics in report.text
     for name in (str(window.folder), str(Path.home()), "cat picture", "ann-marie"):
         assert name not in report.text
     window.act(error_reports.edit_report_text, report, f"It fell over.\n{report.text}")
     window.run(lambda robot: robot.item_click("//###dialog/Save as…"))
     window.frames(2)
-    assert isinstance(session.dialog, FileDialog)
-    window.act(viewing.choose_file, session.dialog, tmp_path / "it.txt")
-    assert session.dialog is None
+    assert isinstance(session.dialogs.current, FileDialog)
+    window.act(viewing.choose_file, session.dialogs.current, tmp_path / "it.txt")
+    assert session.dialogs.current is None
     text = (tmp_path / "it.txt").read_text(encoding="utf-8")
     assert text == f"It fell over.\n{report.text}"
     capfd.readouterr()
@@ -93,29 +93,29 @@ def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(
     recovery.ask_recovery(session)
     error_reports.offer_kept_report(session)
     window.frames(3)
-    dialog = session.dialog
+    dialog = session.dialogs.current
     assert isinstance(dialog, RecoveryDialog)
-    assert session.toasts == [], "one thing at a time"
+    assert session.notices.toasts == [], "one thing at a time"
     window.run(lambda robot: robot.item_click("//###dialog/Report a problem…"))
     window.frames(2)
-    assert session.dialog.text == "It was this."
+    assert session.dialogs.current.text == "It was this."
     window.run(lambda robot: robot.item_click("//###dialog/Close"))
     window.frames(2)
-    assert session.dialog is dialog
+    assert session.dialogs.current is dialog
     window.run(lambda robot: robot.item_click("//###dialog/Later"))
     window.frames(2)
-    assert session.dialog is None
+    assert session.dialogs.current is None
     error_reports.offer_kept_report(session)
-    assert "report is saved" in session.toasts[0].text
-    session.toasts = []
+    assert "report is saved" in session.notices.toasts[0].text
+    session.notices.toasts = []
     error_reports.offer_kept_report(session)
-    assert session.toasts == [], "a message appeared"
+    assert session.notices.toasts == [], "a message appeared"
     window.run(lambda robot: robot.menu_click("//##MainMenuBar/Help/Report a problem…"))
     window.frames(2)
     window.run(lambda robot: robot.item_click("//###dialog/Discard"))
     assert load_report(window.folder) == ""
     window.run(lambda robot: robot.menu_click("//##MainMenuBar/Help/Report a problem…"))
     window.frames(2)
-    assert "Nothing failed" in session.dialog.text
+    assert "Nothing failed" in session.dialogs.current.text
     window.run(lambda robot: robot.key_press(window.Key.escape))
-    assert session.dialog is None
+    assert session.dialogs.current is None

@@ -151,7 +151,7 @@ def test_screenshots_of_the_main_states(window, dragon, save):
             assert near(around(window, export, edge, 3), palette.accent, 50).any()
 
     window.show_tab("Handle")
-    session.show_notice(
+    session.notices.show(
         "cow.png cannot be opened: it is damaged or cut short. Save it again, or take another.",
         tone="error",
     )
@@ -160,7 +160,7 @@ def test_screenshots_of_the_main_states(window, dragon, save):
     assert near(error[600:, 900:], palette.raised).mean() > 0.05
     assert not near(posing_[600:, 900:], palette.danger).any()
 
-    session.toasts = []
+    session.notices.toasts = []
     viewing.show_shortcuts(session)
     sheet = save("shortcuts")
     assert near(sheet[150:650, 150:1130], palette.text, 40).mean() > 0.005

@@ -50,9 +50,9 @@ def test_changing_the_theme_changes_no_size(window):
 def test_shift_and_f1_open_the_sheet_of_keys(window):
     keys = int(window.Key.mod_shift | window.Key.f1)
     window.run(lambda robot: robot.key_press(keys))
-    assert window.session.dialog is not None
+    assert window.session.dialogs.current is not None
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
 
 
 def test_scale_takes_docked_panels_along(window):
@@ -213,7 +213,7 @@ def test_nothing_is_drawn_anew_where_nothing_changes(window, refreshes, tmp_path
     project = window.open(sample_images() / "bar.png")
     saving.write_project(window.session, tmp_path / "bar.lissom", None)
     window.settle()
-    window.session.toasts = []
+    window.session.notices.toasts = []
     window.frames(60)
     refreshes.clear()
     window.frames(60)
@@ -246,7 +246,7 @@ def test_what_a_job_leads_to_is_drawn_at_once(window, refreshes):
 def test_a_tooltip_covers_no_message(window, bar):
     del bar
     for number in range(3):
-        window.session.show_notice(f"Message {number}", tone="error")
+        window.session.notices.show(f"Message {number}", tone="error")
 
     places = []
 

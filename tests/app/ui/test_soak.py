@@ -87,9 +87,9 @@ def test_the_mesh_of_a_project_that_was_closed_is_let_go(window):
 def test_messages_that_are_gone_leave_nothing(window):
     def tell_some():
         for number in range(20):
-            window.session.show_notice(f"message {number}")
+            window.session.notices.show(f"message {number}")
             window.frames(2)
-            window.session.toasts = []
+            window.session.notices.toasts = []
             window.frames(1)
         return in_use()
 

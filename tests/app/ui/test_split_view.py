@@ -127,9 +127,9 @@ def test_a_method_that_leads_handles_leads_a_new_one(window, between):
 def test_a_method_that_is_not_for_these_keys_says_why(window):
     viewing.compare_with_method(window.session, Baseline.CONFORMAL)
     window.settle()
-    (toast,) = window.session.toasts
+    (toast,) = window.session.notices.toasts
     assert "conformal" in f"{toast.text} {toast.details}".lower()
-    window.session.toasts.clear()
+    window.session.notices.toasts.clear()
 
 
 @pytest.mark.usefixtures("between")

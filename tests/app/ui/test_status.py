@@ -38,7 +38,9 @@ def test_without_a_project_there_is_nothing_to_tell(window):
 
 
 def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, loose):
-    window.session.solver_seconds = 0.0064  # the clock of the tests stands still in a job
+    window.session.diagnostics.solver_seconds = (
+        0.0064  # the clock of the tests stands still in a job
+    )
     shown, handles, solver = facts(window)
     proven = loose.document.layers[0].keys[1].pose.certificate
     uses = DistortionRange(proven.k, proven.sigma_a, proven.sigma_b).uses(
@@ -143,5 +145,5 @@ def test_error_is_a_sentence(window, text, wanted):
         raise LissomError(text)
 
     window.act(fail)
-    (toast,) = window.session.toasts
+    (toast,) = window.session.notices.toasts
     assert toast.text == wanted

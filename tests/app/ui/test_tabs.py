@@ -268,7 +268,9 @@ def test_curves_are_saved_as_picture_and_table(window, tab, tmp_path):
 
         def act(robot, suffix=suffix):
             robot.item_click(f"**/###{suffix[1:]}")
-            window.session.dialog = replace(window.session.dialog, folder=tmp_path)
+            window.session.dialogs.current = replace(
+                window.session.dialogs.current, folder=tmp_path
+            )
 
         tab("Distortion", act)
         window.run(lambda robot: robot.item_click("//###dialog/Save"))
@@ -350,7 +352,7 @@ def test_error_appears_when_the_domain_cannot_be_built(window, project, tab):
     tab("Mesh", act)
     assert project.document is before
     assert project.key_resolver is None
-    assert [toast.tone for toast in window.session.toasts] == ["error"]
+    assert [toast.tone for toast in window.session.notices.toasts] == ["error"]
 
 
 def test_export_settings_are_entered_and_undone(window, project, tab):
@@ -463,7 +465,7 @@ def test_export_starts_repeats_and_reports(window, project, tab, tmp_path):
         robot.item_click("**/range/###own")
         robot.item_input_value("**/##last frame", 2)
         robot.item_click("**/###choose output")
-        session.dialog = replace(session.dialog, folder=tmp_path, name="frames")
+        session.dialogs.current = replace(session.dialogs.current, folder=tmp_path, name="frames")
 
     tab("Export", choose)
     window.run(lambda robot: robot.item_click("//###dialog/Choose"))
@@ -474,7 +476,7 @@ def test_export_starts_repeats_and_reports(window, project, tab, tmp_path):
     window.until(lambda: session.export is None)
     names = sorted(path.name for path in (tmp_path / "frames").iterdir())
     assert names == [f"frame_{number:04d}.png" for number in range(3)]
-    toast = next(toast for toast in session.toasts if toast.tone == "good")
+    toast = next(toast for toast in session.notices.toasts if toast.tone == "good")
     assert toast.label == "Open folder"
     assert toast.action.arguments == (tmp_path / "frames",)
 
@@ -485,7 +487,7 @@ def test_error_appears_when_an_export_cannot_begin(window, project, tab, tmp_pat
     assert window.session.export is None
     assert any(
         NO_FOLDER.format(folder=tmp_path / "missing") in toast.text
-        for toast in window.session.toasts
+        for toast in window.session.notices.toasts
     )
 
 

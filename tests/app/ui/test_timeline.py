@@ -30,7 +30,7 @@ from app.editor.actions.timing.channel_keys import (
     set_key_value,
     toggle_camera_view,
 )
-from app.editor.timeline_view import TimeRangeView
+from app.editor.parts.timeline import TimeRangeView
 from app.ui.bars.status import describe_motion_limit
 from app.ui.style.theme import PALETTES
 from app.ui.timeline import segments
@@ -581,8 +581,8 @@ def test_markers_are_made_named_dragged_and_deleted(window, project, play):
     assert marks_of(project) == [(20, "Marker 1")]
     # Another one on the same frame is explained.
     play(lambda hand: hand.robot.key_press(int(window.Key.m)))
-    assert "has a marker already" in window.session.toasts[-1].text
-    window.session.toasts = []
+    assert "has a marker already" in window.session.notices.toasts[-1].text
+    window.session.notices.toasts = []
 
     def name(hand):
         hand.robot.item_double_click("**/marker 20")
@@ -726,13 +726,13 @@ def test_undo_and_redo_name_their_step_and_show_where_it_was(window, project):
         ("Undone: Set easing", 24),
     ):
         editing.undo(session)
-        assert [toast.text for toast in session.toasts] == [text]
+        assert [toast.text for toast in session.notices.toasts] == [text]
         assert here() == frame
     playback.scrub(session, 30)
     editing.redo(session)
     # The way from 24 to 48 has changed, and the playhead is on it.
     assert here() == 30
-    assert [toast.text for toast in session.toasts] == ["Redone: Set easing"]
+    assert [toast.text for toast in session.notices.toasts] == ["Redone: Set easing"]
     editing.redo(session)
     assert here() == 12
     window.frames(2)

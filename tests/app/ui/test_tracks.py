@@ -617,7 +617,7 @@ def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
     window.act(springs.bake_spring, RIGHT)
     window.settle()
     assert bent.document is before
-    assert "does not swing" in window.session.toasts[-1].text
+    assert "does not swing" in window.session.notices.toasts[-1].text
 
 
 @pytest.mark.usefixtures("everything")

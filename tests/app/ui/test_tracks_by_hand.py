@@ -202,7 +202,7 @@ def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed
     (track,) = keyed.layer.tracks
     assert keyed.layer.keys == poses, "the pose stays"
     assert track.keys_rotation, "what turned nothing does from now on"
-    assert any(toast.topic == "turning" for toast in window.session.toasts)
+    assert any(toast.topic == "turning" for toast in window.session.notices.toasts)
     assert [(key.frame, key.place) for key in track.keys] == [(EARLIER, 0), (HALF, 8j), (LATER, 0)]
     assert [key.turn for key in track.keys[::2]] == [0, 0]
     still = np.angle(ground(keyed, HALF)[1])
@@ -224,7 +224,9 @@ def test_the_ring_inserts_a_key_that_moves_nothing_and_turns_on_from_there(windo
     assert track.keys[1].place == at.place
     # The pointer goes by whole pixels.
     assert abs(track.keys[1].turn - (at.turn - 0.4)) < 0.05
-    assert window.session.toasts == [] or window.session.toasts[-1].topic != "turning"
+    assert (
+        window.session.notices.toasts == [] or window.session.notices.toasts[-1].topic != "turning"
+    )
 
 
 def test_escape_takes_a_turn_of_a_track_back(window, keyed):
@@ -447,7 +449,7 @@ def test_deleting_a_handle_ends_its_recording(window, brief, is_over):
         window.frames(2)
         assert brief.recording is None
         assert END not in [handle.id for handle in brief.layer.handles]
-        assert not [toast for toast in session.toasts if toast.details]
+        assert not [toast for toast in session.notices.toasts if toast.details]
 
 
 def test_a_click_records_nothing(window, brief):
@@ -581,7 +583,7 @@ def test_a_late_track_says_why_it_has_no_key_there(window, keyed):
     before, start = keyed.document, place_of(keyed)
     drag(window, start, start + 30j)
     assert keyed.document is before
-    assert [toast.text for toast in window.session.toasts if toast.topic == "late"] == [
+    assert [toast.text for toast in window.session.notices.toasts if toast.topic == "late"] == [
         f"The track is delayed by {LATER} frames, so none of its keys can act at frame {HALF}."
     ]
 
@@ -626,4 +628,4 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
     release_drag(window.session)
     playback.scrub(window.session, EARLIER)
     window.until(lambda: not keyed.pending)
-    assert any(COMPLAINT in toast.text for toast in window.session.toasts)
+    assert any(COMPLAINT in toast.text for toast in window.session.notices.toasts)

@@ -77,7 +77,7 @@ def ways(window, name, frame):
 
 
 def notices(window):
-    return [toast.text for toast in window.session.toasts]
+    return [toast.text for toast in window.session.notices.toasts]
 
 
 def test_the_opposite_step_is_two_keys_away(window, project):
@@ -128,7 +128,7 @@ def test_what_cannot_be_pasted_says_why_in_its_menu_and_at_its_keys(window, proj
     go(window, 6)
     before = project.document
     reason = "“body” has no handle called hip, knee or foot."
-    window.session.toasts = []
+    window.session.notices.toasts = []
     press(window, PASTE)
     assert notices(window) == [reason]
     entry, tips = [], []

@@ -288,21 +288,21 @@ def test_row_is_attached_when_dropped_on_another_row(window, scene, ids, use):
     assert abs(joint.offset) > 10
     assert abs(place(scene, "stick", window) - before) < 0.1
     # A circle is refused with a message, and nothing moves.
-    before, window.session.toasts = scene.document, []
+    before, window.session.notices.toasts = scene.document, []
     use(lambda robot: drop(robot, ids["head"], ids["hat"]))
     assert scene.document is before
-    (toast,) = window.session.toasts
+    (toast,) = window.session.notices.toasts
     assert re.search(says(PARENT_IS_DESCENDANT, name="hat", parent="head"), toast.text)
     # An indirect circle is refused as well, also for one of several layers.
     window.act(attach_layer, ids["ah"], ids["hat"])
     window.settle()
-    before, window.session.toasts = scene.document, []
+    before, window.session.notices.toasts = scene.document, []
     window.act(select_layers, ids["head"], ids["oh"])
     use(lambda robot: drop(robot, ids["oh"], ids["ah"]))
     assert scene.document is before
-    (toast,) = window.session.toasts
+    (toast,) = window.session.notices.toasts
     assert re.search(says(PARENT_IS_DESCENDANT, name="ah", parent="head"), toast.text)
-    window.session.toasts = []
+    window.session.notices.toasts = []
 
 
 def test_chosen_layers_are_dropped_together(window, scene, ids, use):
@@ -456,7 +456,7 @@ def test_several_layers_get_keys_together_and_go_together(window, scene, ids):
     window.settle()
     assert {layer.name for layer in scene.document.layers} == {"stick", "ah", "oh"}
     window.act(delete_layers, *(layer.id for layer in scene.document.layers))
-    assert "at least one layer" in window.session.toasts[-1].text
+    assert "at least one layer" in window.session.notices.toasts[-1].text
 
 
 def test_what_is_hidden_at_all_times_is_switched_instead(window, scene, ids, use):

@@ -15,7 +15,7 @@ from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.posing.pose_solver import POSING
 from app.editor.actions.project_files import autosaving, exporting, files, recovery, saving
-from app.editor.dialogs import FileDialog, Question, RecoveryDialog
+from app.editor.parts.dialogs import FileDialog, Question, RecoveryDialog
 from app.editor.work.jobs import Job, JobKind
 from app.errors import CANCELLED
 from app.storage import NO_FOLDER
@@ -50,7 +50,7 @@ def end():
 
 
 def texts(window):
-    return [toast.text for toast in window.session.toasts]
+    return [toast.text for toast in window.session.notices.toasts]
 
 
 @pytest.mark.parametrize(
@@ -127,8 +127,8 @@ def test_unsaved_work_comes_back_after_a_crash(window, project):
     window.session.project = None
     recovery.ask_recovery(window.session)
     window.frames(3)
-    assert window.session.dialog is not None
-    window.session.dialog = None
+    assert window.session.dialogs.current is not None
+    window.session.dialogs.current = None
     recovery.recover_file(window.session, orphan)
     window.settle()
     recovered = window.session.project
@@ -165,13 +165,13 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
 
     window.act(saving.save)
     window.frames(2)
-    dialog = window.session.dialog
+    dialog = window.session.dialogs.current
     assert isinstance(dialog, FileDialog)
     assert dialog.writes
     assert dialog.folder / dialog.name == path
     assert path.read_bytes() == saved
     dialog.chosen(path).apply(window.session)
-    window.session.dialog = None
+    window.session.dialogs.current = None
     window.settle()
     assert window_title(window.session) == "posed.lissom – Lissom"
     assert len(load_project(path).layers[0].handles) == 1
@@ -181,7 +181,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     window.settle()
     window.act(saving.save)
     window.settle()
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     assert len(load_project(path).layers[0].handles) == 2
 
 
@@ -206,7 +206,7 @@ def saved(window, project, tmp_path):
 
 
 def question(window):
-    dialog = window.session.dialog
+    dialog = window.session.dialogs.current
     assert isinstance(dialog, Question)
     return dialog
 
@@ -245,7 +245,7 @@ def test_a_file_is_held_while_it_is_open_and_no_longer(window, saved, tmp_path):
     # It is no other window's.
     files.open_file(window.session, saved)
     window.settle()
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     elsewhere = tmp_path / "b.lissom"
     saving.write_project(window.session, elsewhere, None)
     window.settle()
@@ -282,8 +282,8 @@ def test_what_somebody_else_saved_meanwhile_is_replaced_only_after_a_question(
     window.settle()
     assert "Another window or program has changed a.lissom" in question(window).text
     answer(window, "Save as…")
-    assert isinstance(window.session.dialog, FileDialog)
-    window.session.dialog = None
+    assert isinstance(window.session.dialogs.current, FileDialog)
+    window.session.dialogs.current = None
     assert saved.read_bytes() == theirs
     assert not project.history.is_saved
     window.act(saving.save)
@@ -294,7 +294,7 @@ def test_what_somebody_else_saved_meanwhile_is_replaced_only_after_a_question(
     window.settle()
     window.act(saving.save)
     window.settle()
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     assert len(load_project(saved).layers[0].handles) == 2
 
 
@@ -307,7 +307,7 @@ def test_a_file_that_was_only_copied_or_touched_is_no_other_one(window, project,
     window.settle()
     window.act(saving.save)
     window.settle()
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     assert len(load_project(saved).layers[0].handles) == 1
 
 
@@ -343,7 +343,7 @@ def test_unsaved_work_that_could_not_be_kept_is_kept_as_soon_as_there_is_room(
         window.clock.now += SECONDS
         window.settle()
         assert any("Unsaved work cannot be autosaved" in text for text in texts(window))
-        window.session.toasts = []
+        window.session.notices.toasts = []
         window.clock.now += SECONDS
         window.settle()
         assert texts(window) == []  # it was reported
@@ -386,15 +386,15 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
     saving.set_project(window.session, None)
     recovery.ask_recovery(window.session)
     window.frames(3)
-    dialog = window.session.dialog
+    dialog = window.session.dialogs.current
     assert isinstance(dialog, RecoveryDialog)
     assert {each.origin.name for each in dialog.candidates} == {"work 0", "work 1", "work 2"}
     answer(window, "Discard")
-    assert len(window.session.dialog.candidates) == 2
+    assert len(window.session.dialogs.current.candidates) == 2
     answer(window, "Later")
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     window.run(lambda robot: robot.menu_click("//##MainMenuBar/File/Unsaved work…"))
-    assert len(window.session.dialog.candidates) == 2
+    assert len(window.session.dialogs.current.candidates) == 2
     answer(window, "Open")
     assert window.session.project is not None
     assert len(find_recoverable_files(window.folder)) == 1
@@ -469,7 +469,7 @@ def test_failing_graphics_driver_is_reported(window, project, monkeypatch, has_r
     (text,) = (text for text in texts(window) if "the context was lost" in text)
     assert ("work was kept" in text) is has_room
     assert ("work could not be kept" in text) is not has_room
-    window.session.toasts = []
+    window.session.notices.toasts = []
     kept = list(window.folder.glob("unsaved-*.lissom"))
     assert len(kept) == has_room
     assert all(len(load_recoverable_file(each)[0].layers[0].handles) == 1 for each in kept)

@@ -23,7 +23,7 @@ from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.posing.pose_solver import POSING
 from app.editor.actions.project_files import autosaving, export_settings, files, saving
 from app.editor.actions.timing import keys, timeline_drag
-from app.editor.timeline_view import KeyBox
+from app.editor.parts.timeline import KeyBox
 from app.editor.work.derived import Derived
 from app.errors import CANCELLED, report_progress
 from app.motion.extents.extent import BoundingBox, extent_key
@@ -49,7 +49,7 @@ def undo_all(window):
 
 
 def details(window):
-    return [toast.details for toast in window.session.toasts if toast.details]
+    return [toast.details for toast in window.session.notices.toasts if toast.details]
 
 
 def frames_of(project):
@@ -392,7 +392,7 @@ def test_bound_that_bounds_nothing_is_refused_in_words(window, loose):
     window.run(enter)
     window.settle()
     assert loose.document is before
-    (toast,) = window.session.toasts
+    (toast,) = window.session.notices.toasts
     assert "between 0 and 1" in toast.text
     assert toast.details == ""
 
@@ -517,7 +517,7 @@ def test_raising_job_is_reported_once(window, loose, monkeypatch, request, kind)
     (text,) = details(window)
     assert "a bug" in text
     assert asked == [kind]
-    window.session.toasts = []
+    window.session.notices.toasts = []
     undo_all(window)
     assert frames_of(loose) == [0]
     assert loose.document.layers[0].handles == ()
@@ -549,7 +549,7 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
     window.run(lambda robot: robot.item_click("//**/Cancel"))
     assert ended.wait(PATIENCE)
     window.settle()
-    assert any(CANCELLED in toast.text for toast in window.session.toasts)
+    assert any(CANCELLED in toast.text for toast in window.session.notices.toasts)
 
 
 WAITING = {
@@ -611,7 +611,7 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
     assert other.layer_runtime.shown.is_current
     assert loose.document is closed
     assert closed.layers[0].handles == before.layers[0].handles
-    assert [toast for toast in window.session.toasts if toast.tone == "error"] == []
+    assert [toast for toast in window.session.notices.toasts if toast.tone == "error"] == []
 
 
 @pytest.mark.usefixtures("loose")

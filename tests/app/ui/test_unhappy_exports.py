@@ -25,8 +25,8 @@ from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.posing.handles import add_handle, remove_handles
 from app.editor.actions.project_files import autosaving, export_settings, exporting, files, saving
 from app.editor.actions.timing import keys
-from app.editor.dialogs import Question
 from app.editor.layering import pictures
+from app.editor.parts.dialogs import Question
 from app.export.writers.gif import GifWriter
 from app.export.writers.png import PngSequence
 from app.export.writers.video import VideoWriter
@@ -70,7 +70,7 @@ def finish(window):
 
 
 def texts(window):
-    return [toast.text for toast in window.session.toasts]
+    return [toast.text for toast in window.session.notices.toasts]
 
 
 def is_whole(path):
@@ -91,7 +91,7 @@ def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
     window.settle()
     window.act(exporting.start_export, tmp_path / "frames")
     session.jobs.wait_until_idle()
-    session.toasts = []
+    session.notices.toasts = []
     steps = []
     for _ in range(MOST_FRAMES):
         awake.clear()
@@ -104,7 +104,7 @@ def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
         steps.append(session.export.done)
     assert steps[-1] == FRAMES
     assert max(np.diff([0, *steps])) <= 2  # of them use the share up
-    session.toasts = []
+    session.notices.toasts = []
     window.frames(40)  # what it leads to is drawn yet
     awake.clear()
     window.frames(2)
@@ -113,7 +113,7 @@ def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
 
 def question(window):
     """Return the open question, whatever it is about."""
-    dialog = window.session.dialog
+    dialog = window.session.dialogs.current
     assert isinstance(dialog, Question), dialog
     return dialog
 
@@ -145,7 +145,7 @@ def test_frames_that_are_there_are_replaced_only_after_a_question(window, tmp_pa
     assert all(map(is_whole, out.iterdir()))
     # They are this export's own now.
     window.act(export_settings.repeat_export)
-    assert window.session.dialog is None
+    assert window.session.dialogs.current is None
     window.settle()
     finish(window)
 
@@ -381,7 +381,7 @@ def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
     worker.end.set()
     window.until(lambda: not export_threads())
     assert list(tmp_path.iterdir()) == []
-    worker, session.toasts = held(Path, "replace", is_of_an_export), []
+    worker, session.notices.toasts = held(Path, "replace", is_of_an_export), []
     window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
     window.act(exporting.cancel_export)
@@ -477,9 +477,9 @@ def test_frame_that_cannot_be_drawn_ends_the_export(window, tmp_path, monkeypatc
         window.act(exporting.start_export, tmp_path / "frames")
         window.settle()
         finish(window)
-    (toast,) = (toast for toast in window.session.toasts if toast.details)
+    (toast,) = (toast for toast in window.session.notices.toasts if toast.details)
     assert "a bug" in toast.details
-    window.session.toasts = []
+    window.session.notices.toasts = []
     assert window.session.export is None
     assert list((tmp_path / "frames").iterdir()) == []
     window.act(export_settings.repeat_export)
@@ -645,11 +645,11 @@ def test_nothing_is_written_over_what_the_project_was_made_from(window, tmp_path
     before = {path: path.read_bytes() for path in (drawing, layer, saved)}
 
     def refused(action, *arguments):
-        session.toasts = []
+        session.notices.toasts = []
         window.act(action, *arguments)
         window.settle()
         assert session.export is None
-        texts = [toast.text + toast.details for toast in session.toasts]
+        texts = [toast.text + toast.details for toast in session.notices.toasts]
         assert any(re.search(says(SAME_FILE), text, re.IGNORECASE) for text in texts), texts
         assert {path: path.read_bytes() for path in before} == before
 

@@ -32,8 +32,8 @@ def put(window, project, rng):
     session = window.session
     for kind in session.jobs.kinds:
         session.jobs.drop(kind)
-    session.dialog = session.export = session.tutorial = session.active_tool = None
-    session.is_quitting, session.toasts = False, []
+    session.dialogs.current = session.export = session.tutorial = session.active_tool = None
+    session.is_quitting, session.notices.toasts = False, []
     saving.set_project(session, own(project))
     random_state(rng, session, session.project)
 
@@ -64,10 +64,10 @@ def test_verbs_work_on_random_documents_or_say_why_not(window, seed):
                         window.frames()
                 except Exception as error:
                     raise AssertionError(walk) from error
-                surprises = [toast.details for toast in session.toasts if toast.details]
+                surprises = [toast.details for toast in session.notices.toasts if toast.details]
                 assert not surprises, (walk, surprises[0])
                 if name not in CLOSES:
                     check_invariants(session)
             session.is_quitting = False
     saving.set_project(session, None)
-    session.is_quitting, session.dialog = False, None
+    session.is_quitting, session.dialogs.current = False, None

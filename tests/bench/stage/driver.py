@@ -76,7 +76,7 @@ class Driver:
     def project(self) -> Project:
         """What is open."""
         if self.session.project is None:
-            raise RuntimeError([toast.text for toast in self.session.toasts])
+            raise RuntimeError([toast.text for toast in self.session.notices.toasts])
         return self.session.project
 
     def frame(self, ahead: float = 0.0) -> DrawnFrame:

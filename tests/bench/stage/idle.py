@@ -48,7 +48,7 @@ def _watch(session: Session, seconds: float) -> None:
     """Wait until the window rests, then tell what it uses; on a thread of its own."""
     end, rests_since = time.monotonic() + PATIENCE, time.monotonic()
     while time.monotonic() < min(end, rests_since + REST):
-        if session.jobs.kinds or session.toasts:
+        if session.jobs.kinds or session.notices.toasts:
             rests_since = time.monotonic()
         time.sleep(0.1)
     before = time.process_time()

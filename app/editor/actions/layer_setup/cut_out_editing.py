@@ -121,7 +121,7 @@ def cut_with_knife(session: Session, project: Project, slit: CutLine) -> None:
     width = CUT_WIDTH * box_diagonal(layer.domain.outline)
     for handle in layer.handles:
         if _away_from(slit, handle.position - layer.corner) < BESIDE * width:
-            session.show_notice(
+            session.notices.show(
                 _(
                     "The knife line crosses {handle}. Draw the line beside the handle, or move "
                     "the handle."
@@ -200,4 +200,4 @@ def save_mask(session: Session, project: Project, path: Path) -> None:
         write_atomically(path, lambda file: file.write(content))
 
     text = _("Saved {name}.").format(name=path.name)
-    run_job(session, WRITING, work, lambda _result: session.show_notice(text, tone="good"))
+    run_job(session, WRITING, work, lambda _result: session.notices.show(text, tone="good"))

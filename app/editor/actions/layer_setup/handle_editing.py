@@ -26,7 +26,7 @@ def select_mirrored(session: Session, project: Project) -> None:
     if partners:
         select_handles(session, partners)
     else:
-        session.show_notice(
+        session.notices.show(
             _(
                 "No handle with a matching name was found. Name the two sides “hand.L” and "
                 "“hand.R”, “foot_l” and “foot_r”, or “left ear” and “right ear”."

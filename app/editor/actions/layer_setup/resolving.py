@@ -147,7 +147,7 @@ def _go_on(session: Session, project: Project, resolver: KeyResolver) -> None:
     if resolver.before not in project.document.layers:
         if _follows_cut_out(resolver):
             return  # the rebuild begins again
-        session.show_notice(
+        session.notices.show(
             _("The keys were not posed again: the project changed meanwhile. Start again.")
         )
         return
@@ -190,7 +190,7 @@ def _accept(session: Session, project: Project, resolver: KeyResolver) -> None:
         editing.update_layer_runtimes(project)
     for number, notice in enumerate(resolver.notices):
         # This runs after every stroke, and notices of earlier strokes are out of date.
-        session.show_notice(as_sentence(notice), topic=f"rebuilt {number}")
+        session.notices.show(as_sentence(notice), topic=f"rebuilt {number}")
     if resolver.unsolved:
         text = ngettext(
             "The pose {poses} exceeds the limits. Move its handles nearer to the drawing, or undo.",
@@ -198,4 +198,4 @@ def _accept(session: Session, project: Project, resolver: KeyResolver) -> None:
             "undo.",
             len(resolver.unsolved),
         )
-        session.show_notice(text.format(poses=", ".join(resolver.unsolved)), tone="error")
+        session.notices.show(text.format(poses=", ".join(resolver.unsolved)), tone="error")

@@ -67,7 +67,7 @@ def paint_stiffness(session: Session, project: Project, places: Sequence[complex
         project.layer, rest, radius=radius, amount=amount, softness=session.softness
     )
     if not is_reached:
-        session.show_notice(
+        session.notices.show(
             _("The brush reaches no outline there. Make it larger, or brush nearer to the edge."),
             topic="material",
         )
@@ -95,7 +95,7 @@ def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
     try:
         project.history.do(stiffness_commands.add_bone(project.active, ends))
     except (EngineError, LissomError) as error:
-        session.show_notice(message_of(error), tone="error", topic="material")
+        session.notices.show(message_of(error), tone="error", topic="material")
 
 
 @with_project
@@ -146,9 +146,9 @@ def suggest_stiffness(session: Session, project: Project) -> None:
         done.append(handle.name)
     if done:
         text = _("Stiffness set by name: {handles}.").format(handles=", ".join(done))
-        session.show_notice(text, topic="material")
+        session.notices.show(text, topic="material")
     else:
-        session.show_notice(
+        session.notices.show(
             _(
                 "No handle is named after a part of the body. Name the handles first, such as "
                 "head, hand, foot or tail."

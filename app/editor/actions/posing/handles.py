@@ -64,7 +64,7 @@ def suggest_handles(session: Session, project: Project) -> None:
     taken = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
     free = [handle for handle in suggested if not (np.abs(taken - handle.place) < near).any()]
     if not free:
-        session.show_notice(_("All suggested places have handles already."))
+        session.notices.show(_("All suggested places have handles already."))
         return
     names = {handle.name for handle in layer.handles}
     handles = [
@@ -76,7 +76,7 @@ def suggest_handles(session: Session, project: Project) -> None:
     added = {handle.id for handle in project.layer.handles} - {h.id for h in layer.handles}
     project.selected_handles = project.selected_frames = frozenset()
     count = len(added)
-    session.show_notice(
+    session.notices.show(
         ngettext(
             "{count} handle was added. Drag it to pose.",
             "{count} handles were added. Drag one to pose.",
@@ -124,14 +124,14 @@ def mirror_handles(session: Session, project: Project) -> None:
     if partners:
         project.history.do(handle_commands.add_handles(project.active, partners), gesture=gesture)
     if outside:
-        session.show_notice(
+        session.notices.show(
             _(
                 "The mirrored handle would lie outside the drawing. Move the handle or the mirror "
                 "axis."
             )
         )
     elif not partners:
-        session.show_notice(_("Every selected handle already has a partner on the other side."))
+        session.notices.show(_("Every selected handle already has a partner on the other side."))
 
 
 def _is_inside(domain: MeshedDomain, place: complex) -> bool:

@@ -56,7 +56,7 @@ def insert_key_at(
         solve_nearest_pose(session, project, clip, frame, take, kind=INSERTING)
     else:
         text = _("Frame {frame} has a key already. Drag a handle to change it.")
-        session.show_notice(text.format(frame=frame))
+        session.notices.show(text.format(frame=frame))
 
 
 def solve_nearest_pose(

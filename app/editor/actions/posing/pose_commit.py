@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from app.document import Command, Layer, Pose, PreviewPose, key_commands, with_all_targets
+from app.document import Command, Keyframe, Layer, Pose, PreviewPose, key_commands, with_all_targets
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session
@@ -55,22 +55,15 @@ def commit_targets(session: Session, project: Project, pull: Pull) -> bool:
 
 def _follow_copies(session: Session, pull: Pull, pose: Pose) -> None:
     """Update copied keys that hold an earlier pose of the drag."""
-    kept = pull.kept
-    if kept is None or all(k.pose.phi is not kept.phi for c in session.copied for k in c.keys):
+    kept, copied = pull.kept, session.clipboard.poses
+    if kept is None or all(k.pose.phi is not kept.phi for c in copied for k in c.keys):
         return
     bring = pull.brought_to(pose)
-    session.copied = tuple(
-        replace(
-            copied,
-            keys=tuple(
-                replace(key, pose=bring(copied.layer, key.pose))
-                if key.pose.phi is kept.phi
-                else key
-                for key in copied.keys
-            ),
-        )
-        for copied in session.copied
-    )
+
+    def follow(layer: Layer, key: Keyframe) -> Keyframe:
+        return replace(key, pose=bring(layer, key.pose)) if key.pose.phi is kept.phi else key
+
+    session.clipboard.change_keys(follow)
 
 
 def _commit_first(session: Session, project: Project, pull: Pull, pose: Pose) -> bool:

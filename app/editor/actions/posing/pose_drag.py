@@ -178,7 +178,7 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
     playback.stop_playback(session)
     frame, shown = playback.edited_frame(session, project), playback.current_frame(session, project)
     if frame != shown:
-        session.show_notice(
+        session.notices.show(
             _("Frame {shown} repeats frame {frame}. A pose here changes every repeat.").format(
                 shown=shown, frame=frame
             ),

@@ -179,7 +179,7 @@ def _note(session: Session, project: Project, pull: Pull, steps: _Steps) -> None
     """Store the result of a job, and queue the next job if the drag is not at rest."""
     if session.project is not project or pull not in project.pending:
         return
-    session.solver_seconds = steps.seconds
+    session.diagnostics.note_solver_time(steps.seconds)
     if pull.layer in project.layer_runtimes:
         project.layer_runtimes[pull.layer].rig = steps.drag.rig
     if pull.start is None:

@@ -57,9 +57,9 @@ def _show_limit_notice(
         )
     text = text.format(handle=name, count=others)
     if not is_at_limits or relax_limits(layer.bounds) is None:
-        session.show_notice(text, topic="stopped")
+        session.notices.show(text, topic="stopped")
     else:
-        session.show_notice(
+        session.notices.show(
             text,
             topic="stopped",
             label=_("Loosen"),
@@ -78,7 +78,7 @@ def _relax_limits(
 ) -> None:
     """Relax a layer's limits, and drag it once more to the original targets."""
     if layer != project.active:
-        session.show_notice(
+        session.notices.show(
             _("Another layer is posed now. Select the layer that was dragged, and drag again.")
         )
         return

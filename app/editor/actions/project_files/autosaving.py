@@ -7,7 +7,7 @@ from app.editor import pending_changes
 from app.editor.actions.posing.pose_commit import key_pose_command
 from app.editor.actions.posing.pose_lifecycle import commit_all_poses
 from app.editor.actions.project_files.saving import has_unsaved_changes
-from app.editor.error_reports import clear_reported_failure, report_first_failure, run_job
+from app.editor.error_reports import report_first_failure, run_job
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
@@ -49,7 +49,7 @@ def write_preferences(session: Session) -> None:
         session,
         WRITING,
         lambda: save_preferences(folder, preferences),
-        lambda _: clear_reported_failure(session, WRITING.complaint),
+        lambda _: session.diagnostics.note_success(WRITING.complaint),
         partial(report_first_failure, session, WRITING.complaint),
     )
 
@@ -118,7 +118,7 @@ def _begin_autosave(session: Session, project: Project, now: float) -> None:
     project.autosaved, project.autosaved_at = kept, now
 
     def done(_: None) -> None:
-        clear_reported_failure(session, AUTOSAVING.complaint)
+        session.diagnostics.note_success(AUTOSAVING.complaint)
         # The project may have been saved or closed meanwhile.
         if session.project is not project or project.autosaved != kept:
             session.autosave.remove()

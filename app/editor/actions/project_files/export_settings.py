@@ -7,7 +7,7 @@ from app.document import ExportSettings, scene_commands
 from app.editor.action import Action, do
 from app.editor.actions import editing
 from app.editor.actions.project_files.exporting import note_export_destination, start_export
-from app.editor.dialogs import FileDialog
+from app.editor.parts.dialogs import FileDialog
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.export import FRAMES, FrameNames, data_file, with_suffix_for
@@ -86,13 +86,15 @@ def _ask(session: Session, project: Project, verb: str, chosen: Callable[[Path],
     out = export_destination(project)
     if out is None:
         out = session.usual_folder / f"{project.name}{suffixes[0] if suffixes else FRAMES}"
-    session.dialog = FileDialog(
-        title=_("Export to file") if suffixes else _("Export to folder"),
-        folder=out.parent,
-        name=out.name,
-        suffixes=suffixes,
-        writes=True,
-        verb=verb,
-        chosen=chosen,
-        is_frame=FrameNames(pattern=settings.names, project=project.name).fits,
+    session.dialogs.show(
+        FileDialog(
+            title=_("Export to file") if suffixes else _("Export to folder"),
+            folder=out.parent,
+            name=out.name,
+            suffixes=suffixes,
+            writes=True,
+            verb=verb,
+            chosen=chosen,
+            is_frame=FrameNames(pattern=settings.names, project=project.name).fits,
+        )
     )

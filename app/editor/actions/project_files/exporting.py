@@ -11,7 +11,6 @@ from app.document import Clip, ExportSettings, FrameRange, clip_of
 from app.editor import pending_changes
 from app.editor.action import Action, do
 from app.editor.actions.posing.pose_commit import key_pose_command
-from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence, report_failure, run_job
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session, with_project
@@ -66,7 +65,7 @@ def start_export(session: Session, project: Project, out: Path) -> None:
     if there:
         count, listed = len(there), there[0] if len(there) == 1 else f"{there[0]} … {there[-1]}"
         folder = out.parent if out.name in there else out
-        session.dialog = Question(
+        session.dialogs.ask(
             title=ngettext("Replace the file?", "Replace the {count} files?", count).format(
                 count=count
             ),
@@ -134,7 +133,7 @@ def _is_free(session: Session) -> bool:
     """Return whether no export is under way; if one is, show a notice."""
     if not is_export_under_way(session):
         return True
-    session.show_notice(UNDER_WAY, topic="export")
+    session.notices.show(UNDER_WAY, topic="export")
     return False
 
 
@@ -209,7 +208,7 @@ def cancel_export(session: Session) -> None:
     if run is not None and _is_one_file(run) and not is_nothing_written:
         return
     session.export = None
-    session.show_notice(CANCELLED_UNWRITTEN if is_nothing_written else CANCELLED_MIDWAY)
+    session.notices.show(CANCELLED_UNWRITTEN if is_nothing_written else CANCELLED_MIDWAY)
 
 
 def confirm_ending_export(session: Session, then: Action) -> None:
@@ -227,7 +226,7 @@ def confirm_ending_export(session: Session, then: Action) -> None:
     result = _("If you quit now, the written frames stay.")
     if run is not None and _is_one_file(run):
         result = _("If you quit now, no file is written.")
-    session.dialog = Question(
+    session.dialogs.ask(
         title=RUNNING,
         text=f"{progress} {result}",
         answers=((_("Quit"), then),),
@@ -259,14 +258,14 @@ def finish_export(session: Session, run: ExportRun, notices: Sequence[str]) -> N
         ).format(count=count, name=name)
     else:
         text = _("Exported {name}.").format(name=name)
-    session.show_notice(
+    session.notices.show(
         text,
         tone="good",
         label=_("Open folder"),
         action=do(open_folder, folder),
     )
     for notice in (*notices, *run.plan.notices):
-        session.show_notice(as_sentence(notice))
+        session.notices.show(as_sentence(notice))
 
 
 def _copy(session: Session, picture: Path) -> None:
@@ -279,7 +278,7 @@ def _copy(session: Session, picture: Path) -> None:
             picture.unlink(missing_ok=True)
 
     text = _("The picture is on the clipboard.")
-    run_job(session, COPYING, work, lambda _result: session.show_notice(text, tone="good"))
+    run_job(session, COPYING, work, lambda _result: session.notices.show(text, tone="good"))
 
 
 def report_failed_export(session: Session, error: Exception) -> None:

@@ -12,7 +12,6 @@ from app.editor.actions import playback, viewing
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.project_files import saving
 from app.editor.actions.project_files.saving import PROJECT
-from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence, run_job
 from app.editor.project import Project
 from app.editor.session import Session
@@ -66,7 +65,7 @@ def open_recent_file(session: Session, path: Path) -> None:
         open_file(session, path)
         return
     session.preferences = session.preferences.without_recent(path)
-    session.show_notice(
+    session.notices.show(
         _("{name} is no longer in {folder}. It was removed from the recent files.").format(
             name=path.name, folder=path.parent
         ),
@@ -139,7 +138,7 @@ def open_dropped_files(session: Session, paths: Sequence[Path]) -> None:
     elif usable:
         if len(paths) > 1:
             text = _("Opened {name}; only one file at a time.")
-            session.show_notice(text.format(name=usable[0].name))
+            session.notices.show(text.format(name=usable[0].name))
         open_file(session, usable[0])
     elif paths:
         name = paths[0].name
@@ -151,7 +150,7 @@ def open_dropped_files(session: Session, paths: Sequence[Path]) -> None:
                 "or a {suffix} file."
             )
         advice = refuse_program_file(name) or text.format(name=name, suffix=PROJECT)
-        session.show_notice(as_sentence(advice), tone="error")
+        session.notices.show(as_sentence(advice), tone="error")
 
 
 def install_opened_file(session: Session, path: Path, opened: OpenedFile) -> None:
@@ -163,7 +162,7 @@ def install_opened_file(session: Session, path: Path, opened: OpenedFile) -> Non
     try:
         hold = saving.lock_project_file(session, path)
     except FileLockedError as error:
-        session.dialog = Question(
+        session.dialogs.ask(
             title=_("Already open"),
             text=_(
                 "{name} is already open {where}. If you save here and there, each save "
@@ -209,11 +208,11 @@ def _install(
     elif any(len(layer.keys) > 1 for layer in opened.document.layers):
         playback.toggle_play(session)
     for notice in opened.notices:
-        session.show_notice(as_sentence(notice))
+        session.notices.show(as_sentence(notice))
     if opened.drawings:
         viewing.show_import_notice(session, project, opened.document.import_log)
     if opened.next_step:
-        session.show_notice(tone="good", **opened.next_step._asdict())
+        session.notices.show(tone="good", **opened.next_step._asdict())
 
 
 def foremost_posable(document: Document) -> int:

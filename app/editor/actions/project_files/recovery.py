@@ -7,8 +7,8 @@ from app.document import History
 from app.editor.action import do
 from app.editor.actions.project_files import saving
 from app.editor.actions.project_files.files import OpenedFile, decode_project, foremost_posable
-from app.editor.dialogs import RecoverableFile, RecoveryDialog
 from app.editor.error_reports import run_job
+from app.editor.parts.dialogs import RecoverableFile, RecoveryDialog
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import JobKind
@@ -26,14 +26,14 @@ def ask_recovery(session: Session) -> None:
     """If there is unsaved work of an earlier session, ask about it."""
     candidates = list_recoverable_files(session)
     if candidates:
-        session.dialog = RecoveryDialog(candidates)
+        session.dialogs.show(RecoveryDialog(candidates))
 
 
 def show_recovery(session: Session) -> None:
     """Show the unsaved work of earlier sessions, or a notice that there is none."""
     ask_recovery(session)
-    if not isinstance(session.dialog, RecoveryDialog):
-        session.show_notice(_("There is no unsaved work from earlier sessions."))
+    if not isinstance(session.dialogs.current, RecoveryDialog):
+        session.notices.show(_("There is no unsaved work from earlier sessions."))
 
 
 def list_recoverable_files(session: Session) -> tuple[RecoverableFile, ...]:
@@ -66,7 +66,7 @@ def _read_recoverable_file(path: Path) -> tuple[OpenedFile, SourceInfo]:
 def discard_recoverable_file(session: Session, path: Path) -> None:
     """Delete unsaved work, and show the rest of the list."""
     remove_recoverable_file(path)
-    session.show_notice(_("The unsaved work was discarded."))
+    session.notices.show(_("The unsaved work was discarded."))
     ask_recovery(session)
 
 
@@ -89,4 +89,4 @@ def install_recovered(session: Session, path: Path, opened: OpenedFile, origin: 
     if origin.path:
         text = _("This is your unsaved work on {name}. Save the project to keep it.")
         text = text.format(name=origin.path.name)
-    session.show_notice(text, tone="good")
+    session.notices.show(text, tone="good")

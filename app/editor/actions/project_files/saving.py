@@ -6,8 +6,8 @@ from app.editor import pending_changes
 from app.editor.action import Action, do
 from app.editor.actions.posing.inserting import insert_key_at
 from app.editor.actions.project_files import exporting
-from app.editor.dialogs import FileDialog, Question
 from app.editor.error_reports import report_failure
+from app.editor.parts.dialogs import FileDialog
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import Job, JobKind
@@ -93,7 +93,7 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
         project.read_as = digest
         _lock_saved_file(session, project, path)
         session.preferences = session.preferences.with_recent(path)
-        session.show_notice(_("Saved {name}.").format(name=path.name), tone="good")
+        session.notices.show(_("Saved {name}.").format(name=path.name), tone="good")
         if then is not None:
             # The project may have new changes by now.
             confirm_unsaved(session, then)
@@ -103,7 +103,7 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
         if not isinstance(error, _ChangedError):
             report_failure(session, SAVING.complaint, error)
         elif session.project is project:
-            session.dialog = Question(
+            session.dialogs.ask(
                 title=_("Changed elsewhere"),
                 text=_(
                     "Another window or program has changed {name} since you opened or saved it."
@@ -138,7 +138,7 @@ def lock_project_file(session: Session, path: Path) -> FileLock | None:
         return FileLock(path)
     except OSError as error:
         reason = error.strerror or str(error)
-        session.show_notice(
+        session.notices.show(
             _(
                 "Lissom cannot tell whether {name} in {folder} is open elsewhere ({reason}). "
                 "It asks before it replaces another person's changes."
@@ -169,7 +169,7 @@ def _lock_saved_file(session: Session, project: Project, path: Path) -> None:
     except FileLockedError as error:
         project.file_lock = None
         text = _("{name} is also open elsewhere: {where}.")
-        session.show_notice(text.format(name=path.name, where=message_of(error)), tone="error")
+        session.notices.show(text.format(name=path.name, where=message_of(error)), tone="error")
     if before is not None:
         before.release()
 
@@ -190,7 +190,7 @@ def confirm_unsaved(session: Session, then: Action) -> None:
         return
     if not pending_changes.is_document_idle(project, after_saves=True):
         text = _("Lissom finishes first: {tasks}.")
-        session.show_notice(
+        session.notices.show(
             text.format(tasks=pending_changes.pending_label(project)), topic="settling"
         )
     asking = do(ask_unsaved_now, then)
@@ -224,7 +224,7 @@ def ask_unsaved_now(session: Session, project: Project, then: Action) -> None:
         text = _("The pose at frame {frame} has no key yet. Saving sets a key.")
         sentences.append(text.format(frame=unkeyed.frame))
         save = do(key_and_save, then)
-    session.dialog = Question(
+    session.dialogs.ask(
         title=UNSAVED,
         text=" ".join(sentences),
         answers=((_("Save"), save), (_("Don't save"), then)),
@@ -271,11 +271,13 @@ def has_unsaved_changes(project: Project) -> bool:
 
 @with_project
 def _ask_where(session: Session, project: Project, then: Action | None) -> None:
-    session.dialog = FileDialog(
-        title=_("Save the project"),
-        folder=project.path.parent if project.path else session.usual_folder,
-        name=project.path.name if project.path else f"{project.name}{PROJECT}",
-        suffixes=(PROJECT,),
-        writes=True,
-        chosen=lambda path: do(write_project, path, then),
+    session.dialogs.show(
+        FileDialog(
+            title=_("Save the project"),
+            folder=project.path.parent if project.path else session.usual_folder,
+            name=project.path.name if project.path else f"{project.name}{PROJECT}",
+            suffixes=(PROJECT,),
+            writes=True,
+            chosen=lambda path: do(write_project, path, then),
+        )
     )

@@ -30,7 +30,7 @@ def save_curves(session: Session, project: Project, path: Path) -> None:
         write_atomically(path, lambda file: file.write(picture))
     else:
         write_curves(path, curves)
-    session.show_notice(_("Saved {name}.").format(name=path.name), tone="good")
+    session.notices.show(_("Saved {name}.").format(name=path.name), tone="good")
 
 
 @with_project

@@ -81,7 +81,7 @@ def set_easing(session: Session, project: Project, keys: KeysByChannel, easing: 
     smooth = _smooth_ends(project, keys) if easing == LINEAR else {}
     if smooth:
         frame = min(map(min, smooth.values()))
-        session.show_notice(
+        session.notices.show(
             _(GOES_ON_SMOOTHLY).format(frame=frame),
             topic="easing",
             label=_("Make it a corner"),
@@ -236,7 +236,7 @@ def add_marker(session: Session, project: Project, frame: int) -> None:
     """Add a marker at a frame, unless it has one."""
     if any(marker.frame == frame for marker in project.document.markers):
         text = _("Frame {frame} has a marker already. Double-click the marker to name it.")
-        session.show_notice(text.format(frame=frame))
+        session.notices.show(text.format(frame=frame))
     else:
         editing.edit_document(session, scene_commands.add_marker(frame))
 

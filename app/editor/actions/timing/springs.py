@@ -74,7 +74,7 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
         return
     moves = np.flatnonzero(np.abs(swing.offsets) > AT_REST)
     if not len(moves):
-        session.show_notice(
+        session.notices.show(
             _(
                 "The handle does not swing, because the shape does not move there. Pose another "
                 "key first."
@@ -107,4 +107,4 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
         "The spring is now a track with {count} keys.",
         len(keys),
     )
-    session.show_notice(text.format(count=len(keys)))
+    session.notices.show(text.format(count=len(keys)))

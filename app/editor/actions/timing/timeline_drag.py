@@ -22,9 +22,7 @@ from app.document import (
 )
 from app.editor.actions import editing, playback
 from app.editor.actions.timing.keys import edit_timing
-from app.editor.project import Project
-from app.editor.session import Session, with_project
-from app.editor.timeline_view import (
+from app.editor.parts.timeline import (
     CycleDrag,
     EdgeDrag,
     KeyBox,
@@ -34,6 +32,8 @@ from app.editor.timeline_view import (
     TimeGesture,
     TimeRangeView,
 )
+from app.editor.project import Project
+from app.editor.session import Session, with_project
 from app.errors import LissomError
 from app.texts import _
 

@@ -38,7 +38,7 @@ def toggle_recording_armed(session: Session, project: Project) -> None:
     if session.records:
         session.records = False
     elif not project.layer.handles:
-        session.show_notice(_("Click on the drawing to add a handle. Then drag it to record."))
+        session.notices.show(_("Click on the drawing to add a handle. Then drag it to record."))
     else:
         playback.stop_playback(session)
         release_drag(session)

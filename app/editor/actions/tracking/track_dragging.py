@@ -66,7 +66,7 @@ def rotate_track_handle(
         command = track_commands.set_turning(project.active, handle, turns=True)
         project.history.do(command, gesture=gesture)
         text = _("The keys of this track now turn the shape, too.")
-        session.show_notice(text, topic="turning")
+        session.notices.show(text, topic="turning")
     if held is not None:
         held.turn = angle
         return

@@ -19,7 +19,7 @@ def find_key_frame(session: Session, document: Document, track: Track, frame: in
     """Return the frame of the track key for a frame; show a notice if none is possible."""
     own = track_source_frame(document, track, frame)
     if own is None:
-        session.show_notice(
+        session.notices.show(
             ngettext(
                 "The track is delayed by {delay} frame, so none of its keys can act at frame "
                 "{frame}.",

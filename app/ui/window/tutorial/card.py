@@ -56,7 +56,7 @@ class Callout:
             return []
         viewport = imgui.internal.find_window_by_name("###Viewport")
         shown = project.layer_runtime.shown
-        if session.dialog is not None or viewport is None or shown is None:
+        if session.dialogs.current is not None or viewport is None or shown is None:
             return []
         screen = ScreenMapping(session, project, shown, viewport.pos)
         lead = find_tutorial_step(session, look, guide, screen, places)

@@ -50,7 +50,7 @@ def test_in_the_timeline_the_one_chosen_key_is_copied_wherever_the_playhead_is(s
     editing.select_keys(session, frozenset({6}))
     for session.is_timeline_focused, frame in ((True, 6), (False, 0)):
         copying.copy_pose_or_keys(session)
-        assert session.copied[0].keys[0].pose is session.project.layer.key(frame).pose
+        assert session.clipboard.poses[0].keys[0].pose is session.project.layer.key(frame).pose
 
 
 def test_several_keys_are_pasted_with_their_ways_and_distances(session):
@@ -156,4 +156,4 @@ def test_a_pose_that_no_key_holds_is_copied_and_gives_way_to_a_pasted_one(sessio
     assert project.unkeyed_pose is unkeyed
     project.selected_frames = frozenset()
     copying.copy_pose_or_keys(session)
-    assert session.copied[0].keys[0].pose is unkeyed
+    assert session.clipboard.poses[0].keys[0].pose is unkeyed

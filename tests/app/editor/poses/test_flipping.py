@@ -55,4 +55,4 @@ def test_late_flip_is_reported(session):
     before = session.project.document
     settle(session)
     assert session.project.document is before
-    assert NOT_PASTED in session.toasts[-1].text
+    assert NOT_PASTED in session.notices.toasts[-1].text

@@ -31,10 +31,10 @@ from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.layering.layer_list import rename_layer
 from app.editor.layering.layer_selection import select_layers, set_active_layer
 from app.editor.layering.pictures import make_still
+from app.editor.parts.clipboard import CopiedKeys
 from app.editor.poses import copying, library, paste_destinations, pasting
 from app.editor.poses.paste_destinations import NOTHING_COPIED
 from app.editor.poses.pasting import NOT_PASTED
-from app.editor.session import CopiedKeys
 
 SWAPPED, FLIPPED, PLAIN = "swapped", "flipped", "as it is"
 
@@ -282,7 +282,7 @@ def test_paste_reports_layers_without_a_common_name(session):
     settle(session)
     assert layer(session, "body").key_frames == {0, 12}
     assert layer(session, "far leg").key_frames == {0}
-    texts = [toast.text for toast in session.toasts]
+    texts = [toast.text for toast in session.notices.toasts]
     assert "“far leg” has no handle called hip, knee or foot." in texts
 
 
@@ -351,7 +351,7 @@ def test_paste_reports_a_layer_that_changes_meanwhile(session):
     before = session.project.document
     settle(session)
     assert session.project.document is before
-    assert NOT_PASTED in session.toasts[-1].text
+    assert NOT_PASTED in session.notices.toasts[-1].text
 
 
 def test_poses_of_a_library_are_offered_to_layers_with_the_same_names(session):
@@ -381,13 +381,16 @@ def test_poses_of_a_library_are_offered_to_layers_with_the_same_names(session):
 def test_keys_of_several_layers_come_back_by_name_in_another_project(session, tmp_path):
     copying.copy_all_poses(session)
     other = walking(tmp_path, walker())
-    other.copied = session.copied
+    other.clipboard.poses = session.clipboard.poses
     go(other, 6)
     pasting.paste_copied(other)
     settle(other)
     close(ways(other, "near leg", 6), ways(session, "near leg", 0))
-    (one,) = [each for each in session.copied if each.layer.name == "near leg"]
-    other.copied = (replace(one, layer=replace(one.layer, name="nobody")), *other.copied[1:])
+    (one,) = [each for each in session.clipboard.poses if each.layer.name == "near leg"]
+    other.clipboard.poses = (
+        replace(one, layer=replace(one.layer, name="nobody")),
+        *other.clipboard.poses[1:],
+    )
 
 
 def test_handles_of_one_layer_are_swapped_within_it(tmp_path):
@@ -458,7 +461,7 @@ def test_the_poses_of_chosen_layers_are_copied_and_one_is_pasted_onto_all_of_the
     select_layers(session, near, far)
     copying.copy_pose_or_keys(session)
     settle(session)
-    assert {each.layer.id for each in session.copied} == {near, far}
+    assert {each.layer.id for each in session.clipboard.poses} == {near, far}
     set_active_layer(session, near)
     copying.copy_pose_or_keys(session)
     go(session, 12)
@@ -469,7 +472,7 @@ def test_the_poses_of_chosen_layers_are_copied_and_one_is_pasted_onto_all_of_the
     close(ways(session, "far leg", 12), ways(session, "near leg", 0))
     close(ways(session, "near leg", 12), ways(session, "near leg", 0))
     assert layer(session, "body").key_frames == {0}
-    assert any("“body” has no handle" in toast.text for toast in session.toasts)
+    assert any("“body” has no handle" in toast.text for toast in session.notices.toasts)
     editing.undo(session)
     assert session.project.document is before
 

@@ -134,7 +134,7 @@ def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
     wanted = project.layer.key(0).pose.targets[hand].position
     assert per_mille(session, wanted - after[hand]) < 1
     assert ((wanted - after[hand]) / (asked - after[hand])).real > 0
-    (toast,) = [toast for toast in session.toasts if "stopped" in toast.text]
+    (toast,) = [toast for toast in session.notices.toasts if "stopped" in toast.text]
     name = project.layer.handle(hand).name
     assert toast.text == STOPPED_AT_LIMIT.format(handle=name)
     # The whole drag is one step, and the pose is solved again from its own targets.
@@ -156,7 +156,7 @@ def test_loosen_pulls_once_more_to_where_the_hand_went(session):
     short = abs(where(project)[0][hand] - asked)
     playback.scrub(session, 10)
     settle(session)
-    (toast,) = [toast for toast in session.toasts if "stopped" in toast.text]
+    (toast,) = [toast for toast in session.notices.toasts if "stopped" in toast.text]
     assert toast.label == "Loosen"
     toast.action.apply(session)
     settle(session)
@@ -174,7 +174,7 @@ def test_alt_keeps_the_target_and_forces_the_drag(session):
     after, _ = where(project)
     assert project.layer.key(0).pose.targets[hand].position == asked
     assert per_mille(session, [after[i] - before[i] for i in before if i != hand]) > 10
-    assert not [toast for toast in session.toasts if "stopped" in toast.text]
+    assert not [toast for toast in session.notices.toasts if "stopped" in toast.text]
 
 
 @pytest.mark.parametrize("session", ["person"], indirect=True)
@@ -203,7 +203,7 @@ def test_a_drag_within_reach_is_wanted_where_it_was_let_go(session):
     settle(session)
     assert project.layer.key(0).pose.targets[hand].position == asked
     assert per_mille(session, where(project)[0][hand] - asked) < 1
-    assert not session.toasts
+    assert not session.notices.toasts
 
 
 @pytest.mark.parametrize("session", ["person"], indirect=True)
@@ -251,4 +251,4 @@ def test_all_handles_together_take_the_whole_drawing_along(session):
     tool_pointer.release_pointer(session, start + way)
     settle(session)
     assert per_mille(session, where(project)[1] - before - way) < 1
-    assert not session.toasts
+    assert not session.notices.toasts

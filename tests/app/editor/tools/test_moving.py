@@ -189,7 +189,7 @@ def test_layer_stays_when_its_parent_is_locked(joined):
     drag(joined, ctrl=True, shift=True)
     move_tool.nudge_layer(joined, 1)
     assert joined.project.document is document
-    assert "is locked" in joined.toasts[-1].text
+    assert "is locked" in joined.notices.toasts[-1].text
 
 
 def test_the_layer_that_is_pressed_moves_and_no_other(blob, tmp_path):

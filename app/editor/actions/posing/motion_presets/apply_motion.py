@@ -37,7 +37,7 @@ def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
         return
     before = project.document.layer(draft.layer)
     if before.domain is not draft.domain:
-        session.show_notice(
+        session.notices.show(
             _(
                 "The motion was not applied: the drawing's shape changed meanwhile. Apply the "
                 "motion again."
@@ -123,7 +123,7 @@ def _accept(session: Session, project: Project, task: MotionJob, giving: MotionS
     """Write the motion to the layer and play it; if the layer changed meanwhile, show a notice."""
     before, draft = task.before, task.setup
     if before not in project.document.layers:
-        session.show_notice(
+        session.notices.show(
             _("The motion was not applied: the drawing changed meanwhile. Apply the motion again.")
         )
         project.motion_setup = project.motion_setup or draft
@@ -162,9 +162,9 @@ def _show_unreached_joints(session: Session, giving: MotionSolve) -> None:
         text = text.format(joints=named)
     size = giving.reachable_size
     if size is None:
-        session.show_notice(text, topic="motion")
+        session.notices.show(text, topic="motion")
         return
-    session.show_notice(
+    session.notices.show(
         text,
         topic="motion",
         label=_("Use size {size:.2f}").format(size=size),
@@ -180,7 +180,7 @@ def apply_motion_at_size(
     found = project.document.layer(layer) if layer in project.layer_runtimes else None
     given = next((each for each in found.motions if each.first == first), None) if found else None
     if found is None or given is None:
-        session.show_notice(_("This motion was deleted."))
+        session.notices.show(_("This motion was deleted."))
         return
     draft = preset_setup.setup_of_applied_motion(found, given)
     parameters = replace(draft.parameters, size=size)

@@ -126,7 +126,7 @@ def mirror_joints(session: Session, project: Project) -> None:
             "The mirrored places of {joints} are outside the drawing. Drag these joints to "
             "their places."
         )
-        session.show_notice(text.format(joints=", ".join(map(_, outside))))
+        session.notices.show(text.format(joints=", ".join(map(_, outside))))
 
 
 def mirrored_side(draft: MotionSetup) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.editor.action import Action
+from app.editor.work.revised import Revised
 from app.storage import SourceInfo
 from app.texts import _
 
@@ -82,3 +83,27 @@ class ProblemReport:
 
 
 Dialog = FileDialog | Question | ShortcutSheet | RecoveryDialog | ProblemReport
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class DialogState(Revised):
+    """The open dialog; there is at most one."""
+
+    current: Dialog | None = None
+    uses_system: bool = False  # whether the system's own file dialogs are used
+
+    def show(self, dialog: Dialog | None) -> None:
+        """Open a dialog in place of the open one."""
+        self.current = dialog
+
+    def ask(self, *, title: str, text: str, answers: tuple[tuple[str, Action], ...]) -> None:
+        """Ask a question in place of the open dialog."""
+        self.show(Question(title=title, text=text, answers=answers))
+
+    def close(self) -> None:
+        """Close the dialog without an action; the dialog below a report returns."""
+        self.current = self.current.behind if isinstance(self.current, ProblemReport) else None
+
+    def use_own_file_browser(self) -> None:
+        """From now on, use Lissom's file browser instead of the system's dialogs."""
+        self.uses_system = False
