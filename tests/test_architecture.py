@@ -266,7 +266,7 @@ def state_parts() -> Iterator[tuple[str, ast.ClassDef]]:
                 yield name, node
 
 
-def written_attributes(name: str) -> Iterator[tuple[str, str]]:
+def written_attributes(name: str, collections: set[str]) -> Iterator[tuple[str, str]]:
     """Yield the attributes that a module sets, deletes or mutates on an object, with the code.
 
     An object may write its own attributes, also if a part has one of the same name.
@@ -280,7 +280,9 @@ def written_attributes(name: str) -> Iterator[tuple[str, str]]:
                 if isinstance(each, ast.Constant) and isinstance(each.value, str):
                     yield each.value, ast.unparse(node)
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-            target = node.func.value if node.func.attr in MUTATING else node
+            target = node.func.value
+            if node.func.attr not in MUTATING or getattr(target, "attr", "") not in collections:
+                continue
         elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load):
             continue
         if isinstance(target, ast.Attribute) and ast.unparse(target.value) != "self":
@@ -289,14 +291,18 @@ def written_attributes(name: str) -> Iterator[tuple[str, str]]:
 
 def test_attributes_of_a_part_are_written_in_its_module():
     homes: dict[str, set[str]] = {}
+    collections = set()
     for name, part in state_parts():
         for field in part.body:
             if isinstance(field, ast.AnnAssign) and part.name not in OWNERS:
-                homes.setdefault(ast.unparse(field.target), set()).add(name)
+                attribute = ast.unparse(field.target)
+                homes.setdefault(attribute, set()).add(name)
+                if ast.unparse(field.annotation).startswith(("dict", "list", "set")):
+                    collections.add(attribute)
     others = [
         (name, written)
         for name in sorted(FILES)
-        for attribute, written in written_attributes(name)
+        for attribute, written in written_attributes(name, collections)
         if name not in homes.get(attribute, {name})
     ]
     assert homes

@@ -19,6 +19,7 @@ from app.cli.process import (
 from app.editor import Jobs, Session, error_reports
 from app.editor.actions.project_files import autosaving, files, recovery
 from app.editor.parts.dialogs import DialogState
+from app.editor.parts.settings import SessionSettings
 from app.errors import EXPECTED_ERRORS
 from app.render import Renderer
 from app.render.gpu.context import window_context
@@ -58,8 +59,7 @@ def run_window(file: Path | None) -> int:
     session = Session(
         clock=time.perf_counter,
         jobs=Jobs(),
-        folder=folder,
-        preferences=load_preferences(folder),
+        settings=SessionSettings(folder=folder, preferences=load_preferences(folder)),
         dialogs=DialogState(uses_system=find_system_dialogs() is not None),
     )
     _make(folder, session)
@@ -78,7 +78,7 @@ def run_window(file: Path | None) -> int:
         have_ended = session.jobs.close(LEISURE if session.is_quitting else HURRY)
         if session.is_quitting:
             # Also an autosave that was being written when the person left.
-            session.autosave.remove()
+            session.settings.autosave.remove()
     if status == EXIT_FAILED or not have_ended or has_running_threads():
         # Do not take down libraries under a worker that never ends. After an exception their state
         # is unknown.
@@ -97,7 +97,7 @@ def _show(window: Window, endings: SignalHandler) -> int:
         if not session.is_quitting:
             _keep(session)
         with suppress(*EXPECTED_ERRORS):
-            save_preferences(session.folder, session.preferences)
+            save_preferences(session.settings.folder, session.settings.preferences)
         if session.is_quitting:
             exit_within(PATIENCE, 0)
         else:

@@ -21,6 +21,7 @@ from app.editor.parts.dialogs import (
     RecoveryDialog as RecoveryDialog,
     ShortcutSheet as ShortcutSheet,
 )
+from app.editor.parts.export_state import ExportRun as ExportRun
 from app.editor.parts.notices import Toast as Toast
 from app.editor.parts.timeline import (
     CycleDrag as CycleDrag,
@@ -40,7 +41,6 @@ from app.editor.session import (
     BoxOverlay as BoxOverlay,
     CurveKind as CurveKind,
     CutTool as CutTool,
-    ExportRun as ExportRun,
     HeatMap as HeatMap,
     Hint as Hint,
     KnifeOverlay as KnifeOverlay,

@@ -94,16 +94,18 @@ def keep_crash_report(session: Session, error: Exception) -> str:
     """Write a report of a fatal error beside unsaved work, and return it."""
     session.diagnostics.note_error(error_trace(session, error))
     text = problem_report_text(session)
-    write_report(session.folder, text)
+    write_report(session.settings.folder, text)
     return text
 
 
 def keep_fault_report(session: Session) -> None:
     """Write a report of an earlier crash of Python, for example in a driver, if there was one."""
-    logged = read_fault_log(session.folder)
+    logged = read_fault_log(session.settings.folder)
     if logged:
         trace = redact_names(logged, _hidden(session))
-        write_report(session.folder, format_problem_report(graphics="", actions=(), trace=trace))
+        write_report(
+            session.settings.folder, format_problem_report(graphics="", actions=(), trace=trace)
+        )
 
 
 def show_problem_report(session: Session) -> None:
@@ -113,7 +115,7 @@ def show_problem_report(session: Session) -> None:
 
 def show_kept_or_new_report(session: Session) -> None:
     """Show the kept report of an earlier crash, or else a report of this session."""
-    text = load_report(session.folder)
+    text = load_report(session.settings.folder)
     if text:
         session.dialogs.show(ProblemReport(text=text, is_kept=True, behind=_behind(session)))
     else:
@@ -122,7 +124,7 @@ def show_kept_or_new_report(session: Session) -> None:
 
 def offer_kept_report(session: Session) -> None:
     """Offer the kept report of an earlier crash once, unless a dialog is open."""
-    if session.dialogs.current is None and mark_report_seen(session.folder):
+    if session.dialogs.current is None and mark_report_seen(session.settings.folder):
         session.notices.show(
             _(
                 "Lissom quit unexpectedly last time. A report is saved on this computer. "
@@ -142,7 +144,7 @@ def ask_report_path(session: Session, report: ProblemReport) -> None:
     session.dialogs.show(
         FileDialog(
             title=_("Save the report"),
-            folder=session.usual_folder,
+            folder=session.settings.usual_folder,
             name=_("Lissom report") + ".txt",
             suffixes=(".txt",),
             writes=True,
@@ -156,13 +158,13 @@ def save_report(session: Session, report: ProblemReport, path: Path) -> None:
     check_writable(path, sources=())
     write_atomically(path, lambda file: file.write(report.text.encode()))
     if report.is_kept:
-        remove_report(session.folder)
+        remove_report(session.settings.folder)
     session.dialogs.show(report.behind)
     session.notices.show(_("Saved {name}.").format(name=path.name), tone="good")
 
 
 def discard_report(session: Session, report: ProblemReport) -> None:
-    remove_report(session.folder)
+    remove_report(session.settings.folder)
     session.dialogs.show(report.behind)
     session.notices.show(_("The report was discarded."))
 
@@ -177,8 +179,8 @@ def _behind(session: Session) -> RecoveryDialog | None:
 
 def _hidden(session: Session) -> set[Path]:
     """Return the paths that a report hides."""
-    project, preferences = session.project, session.preferences
+    project, preferences = session.project, session.settings.preferences
     known = {*preferences.recent, *preferences.written}
     if project is not None:
-        known |= {*project.sources, *project.export_destinations.values()}
+        known |= {*project.file.sources, *project.exports.by_format.values()}
     return known

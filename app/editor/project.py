@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,6 @@ from app.document import (
     PictureFile,
     Playhead,
     Pose,
-    PreviewPose,
     TreeRow,
     Variant,
     camera_at,
@@ -38,6 +36,8 @@ from app.document import (
     track_in,
     transform_at,
 )
+from app.editor.parts.export_state import ExportDestinations
+from app.editor.parts.project_file import ProjectFile
 from app.editor.parts.timeline import TimelineState
 from app.editor.work.derived import Derived
 from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime
@@ -56,7 +56,7 @@ from app.motion import (
 from app.render import View, fit_view
 from app.reports import Curves
 from app.solving import KeyResolver
-from app.storage import FileLock, Picture, SourceInfo
+from app.storage import Picture
 from engine.geometry import RigidMotion
 from engine.maps import Bounds
 
@@ -97,21 +97,9 @@ class Project(Revised):
     """The open document, and the person's view of it."""
 
     history: History
-    name: str  # file name of the picture or the project, without suffix
-    path: Path | None  # the project file; None for a new project
-    # Source files of the pictures; they are never overwritten.
-    drawings: set[Path] = field(default_factory=set)
+    file: ProjectFile
     is_import_log_open: bool = False  # in the panel of layers
-    file_lock: FileLock | None = None  # lock against other windows
-    # Digest of the file when it was last opened or saved here; None for a new project.
-    read_as: str | None = None
-    # Whether it is recovered work, whose first save asks for the file.
-    is_recovered: bool = False
-    # The document and the unkeyed pose in the autosave, the seconds of the clock then, and the
-    # seconds when a later change was first seen.
-    autosaved: tuple[Document, PreviewPose | None] | None = None
-    autosaved_at: float = 0.0
-    changed_at: float | None = None
+    exports: ExportDestinations = field(default_factory=ExportDestinations)
 
     layer_runtimes: dict[int, LayerRuntime]  # by layer id
     # Decoded pictures, also of layers that undo may bring back.
@@ -148,11 +136,6 @@ class Project(Revised):
     stale: tuple[Layer, float] | None = None
     unbuildable: Layer | None = None  # a layer whose cut-out gives no domain
     brush: float | None = None  # radius in pixels of the picture; None before it is set
-    # Destination of the next export by format, the newest last.
-    export_destinations: dict[str, Path] = field(default_factory=dict)
-    # Format and destination of an export that may replace files: the person agreed, or the files
-    # are of an export.
-    replaceable: tuple[str, Path] | None = None
 
     playhead: Playhead = field(default_factory=Playhead)
     moved_at: float = -inf  # the clock's seconds when the playhead last moved
@@ -186,11 +169,6 @@ class Project(Revised):
     @property
     def document(self) -> Document:
         return self.history.document
-
-    @property
-    def origin(self) -> SourceInfo:
-        """Origin of autosaved changes, by which recovery finds them."""
-        return SourceInfo(self.name, self.path)
 
     @property
     def layer(self) -> Layer:
@@ -268,10 +246,6 @@ class Project(Revised):
     def selected_key_count(self) -> int:
         """The number of selected keys in all channels."""
         return sum(map(len, self.selected_keys.values()))
-
-    @property
-    def sources(self) -> tuple[Path, ...]:
-        return (*self.drawings, *([] if self.path is None else [self.path]))
 
     def keys_with(self, channel: Channel[Any], frame: int) -> KeysByChannel:
         """Return all selected keys if a key is one of them, or else only this key."""

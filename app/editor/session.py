@@ -1,24 +1,23 @@
 """The state of one window: all values that may change, without drawing."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import wraps
 from pathlib import Path
 from typing import Concatenate, Literal, ParamSpec, Protocol
 
-from app.document import Baseline, Document, Meshing, Variant
+from app.document import Baseline, Variant
 from app.editor.action import Action
 from app.editor.parts.clipboard import Clipboard
 from app.editor.parts.diagnostics import Diagnostics
 from app.editor.parts.dialogs import DialogState, FileDialog
+from app.editor.parts.export_state import ExportState
 from app.editor.parts.notices import Notices
+from app.editor.parts.settings import SessionSettings
 from app.editor.project import Project
 from app.editor.work.jobs import Jobs
 from app.editor.work.revised import Revised
-from app.export import CachedVertices, ExportPlan
-from app.motion import BoundingBox
-from app.storage import Autosave, Cancellation, Preferences, home_folder
-from engine.arrays import Bytes
+from app.export import ExportPlan
 
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
 CurveKind = Literal["relative", "absolute"]
@@ -162,21 +161,6 @@ class ActiveTool(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ExportRun:
-    """A running export: its plan, its settings, and the number of drawn frames.
-
-    The file of an export to the clipboard is deleted afterwards.
-    """
-
-    document: Document
-    pictures: Mapping[int, Bytes]
-    poses: Mapping[int, CachedVertices]
-    plan: ExportPlan
-    for_clipboard: bool = False
-    done: int = 0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TutorialState:
     """Progress of the tutorial.
 
@@ -198,10 +182,7 @@ class Session(Revised):
 
     clock: Callable[[], float]
     jobs: Jobs
-    folder: Path  # folder of settings and unsaved work
-    preferences: Preferences = field(default_factory=Preferences)
-    saved_preferences: Preferences = field(init=False)  # as on the disk
-    autosave: Autosave = field(init=False)
+    settings: SessionSettings
     project: Project | None = None
     notices: Notices = field(init=False)
     dialogs: DialogState = field(default_factory=DialogState)
@@ -210,19 +191,11 @@ class Session(Revised):
     overlays: Overlays = field(default_factory=Overlays)
     screen: tuple[int, int] = (640, 480)  # pixels of the viewport
     full_detail: bool = True  # whether the full mesh is drawn fast enough in motion
-    # Whether values are prepared before they are shown: in-betweens, corrections, series for
-    # smooth playback, measured distortion and the extent of the motion. Most tests turn this off.
-    prepares_ahead: bool = True
-    meshing: Meshing = field(default_factory=Meshing)  # of new pictures
-    export: ExportRun | None = None
-    exported: ExportPlan | None = None  # the last complete export
-    cancellation: Cancellation = field(default_factory=Cancellation)  # of the export
+    export: ExportState = field(default_factory=ExportState)
     tutorial: TutorialState | None = None  # None without a tutorial
     named_layer: int | None = None  # layer whose name is edited
     pointed_layer: int | None = None  # layer whose list row is under the pointer
     panel_to_focus: str = ""  # to be brought to the front in the next frame
-    export_frame: BoundingBox | None = None  # shown while export settings are shown
-    is_aspect_locked: bool = True  # of width and height of an export
     curves: CurveKind = "relative"
     compare_view: CompareView | None = None  # None shows the drawing alone
     last_compare_view: CompareView = CompareView(method=Variant.LINEAR)  # before it was closed
@@ -245,8 +218,6 @@ class Session(Revised):
     is_quitting: bool = False
 
     def __post_init__(self) -> None:
-        self.saved_preferences = self.preferences
-        self.autosave = Autosave(self.folder)
         self.notices = Notices(clock=self.clock)
 
     @property
@@ -254,12 +225,6 @@ class Session(Revised):
         """Whether drags pose, and no other tool is selected."""
         drafts = self.project is not None and self.project.motion_setup is not None
         return not (drafts or self.moves) and self.cutting is None and self.material is None
-
-    @property
-    def usual_folder(self) -> Path:
-        """The person's last folder."""
-        folder = self.preferences.folder
-        return folder if folder is not None and folder.is_dir() else home_folder()
 
     def ask_file(
         self,
@@ -273,7 +238,7 @@ class Session(Revised):
         self.dialogs.show(
             FileDialog(
                 title=title,
-                folder=self.usual_folder,
+                folder=self.settings.usual_folder,
                 name=name,
                 suffixes=suffixes,
                 writes=bool(name),

@@ -90,7 +90,7 @@ def tables(extent: Extent) -> Iterator[Table]:
 
 def _opening(stage: Driver, extent: Extent) -> Table:
     """Measure from a dropped picture to a drag."""
-    stage.session.meshing = Meshing(triangles=extent.triangles)
+    stage.session.settings.default_meshing = Meshing(triangles=extent.triangles)
     path = sample_images() / extent.picture
     times = [_open_and_drag(stage, path, extent.reach) for _ in range(extent.repeats)]
     names = ("until a click adds a handle", "until that handle has followed the pointer")

@@ -25,6 +25,8 @@ from app.document import Document, History, Variant
 from app.document.commands import scene_commands
 from app.document.settings import Marker
 from app.editor.actions.project_files import autosaving
+from app.editor.parts.project_file import ProjectFile
+from app.editor.parts.settings import SessionSettings
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
@@ -191,11 +193,10 @@ def _edit_on(tell: Callable[[int, float], None], folder: Path, document: Documen
     def clock() -> float:
         return 1000.0 + LAPSE * (time.perf_counter() - start)
 
-    session = Session(clock=clock, jobs=Jobs(clock), folder=folder)
+    session = Session(clock=clock, jobs=Jobs(clock), settings=SessionSettings(folder=folder))
     session.project = Project(
-        name="a",
+        file=ProjectFile(name="a"),
         history=History(document, saved=True),
-        path=None,
         layer_runtimes={},
         active=document.layers[-1].id,
     )

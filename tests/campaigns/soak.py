@@ -118,7 +118,7 @@ def make_scene(window: Harness, folder: Path) -> Path:
     stack = "".join(f'<layer name="{n}" src="data/{n}.png"/>' for n in range(3))
     drawing = folder / "scene.ora"
     drawing.write_bytes(openraster((160, 120), stack, layers))
-    window.session.meshing = Meshing(triangles=1000, detail="coarse")
+    window.session.settings.default_meshing = Meshing(triangles=1000, detail="coarse")
     project = window.open(drawing)
     arm, body = (layer.id for layer in reversed(project.document.layers[1:]))
     for layer, places in ((body, (50 + 20j, 50 + 95j)), (arm, (70 + 67j, 140 + 67j))):
@@ -219,7 +219,7 @@ def export(window: Harness, folder: Path, name: str) -> None:
     export_settings.set_export_settings(session, settings)
     suffixes = EXPORT_FORMATS[name].suffixes
     exporting.start_export(session, place / f"a{suffixes[0]}" if suffixes else place)
-    while session.export is not None or session.jobs.kinds:
+    while session.export.run is not None or session.jobs.kinds:
         session.jobs.wait_until_idle()
         window.frames()
     assert list(place.iterdir()), f"{name} exports nothing"

@@ -33,7 +33,7 @@ EAR = 262 + 1010j  # of the giraffe
 
 def _first_minute(window: Film, path: Path) -> None:
     """A picture, three handles, two keys, and it moves."""
-    window.session.meshing = Meshing(triangles=6_000)
+    window.session.settings.default_meshing = Meshing(triangles=6_000)
     window.open(sample_images() / "dragon.png")
     window.show_tab("Handle")
     come_to_rest(window)
@@ -176,7 +176,7 @@ def _ears(window: Film, path: Path) -> None:
 
 def _walking(window: Film, path: Path) -> None:
     """A giraffe that has no handle yet is told to walk, and walks."""
-    window.session.meshing = Meshing(triangles=6_000)
+    window.session.settings.default_meshing = Meshing(triangles=6_000)
     window.open(sample_images() / "giraffe.png")
     window.show_tab("Motion")
     come_to_rest(window)

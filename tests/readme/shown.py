@@ -6,6 +6,7 @@ from pathlib import Path
 from harness import Harness, Robot
 
 from app.editor import Jobs, Session
+from app.editor.parts.settings import SessionSettings
 from app.render import Renderer
 from app.render.gpu.context import create_context
 from app.ui.bars.icons import GROUPS
@@ -23,7 +24,7 @@ def shown_now() -> Shown:
     These are the titles of the menus and of the tabs at the side, and the tools of the icon bar.
     Nothing is drawn for it.
     """
-    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=Path())
+    session = Session(clock=lambda: 0.0, jobs=Jobs(), settings=SessionSettings(folder=Path()))
     params = Window(session, lambda: Renderer(create_context())).runner_params()
     return {
         "menus": list(MENUS),

@@ -112,7 +112,7 @@ def _split_view(window: Harness) -> None:
 def open_sample(window: Harness, sample: str, *, frame: int, theme: ThemeName = "dark") -> Project:
     """Open a sample project, which begins to play, and stop at a frame."""
     project = window.again(Harness.open, sample_images() / f"{sample}.lissom")
-    if window.session.preferences.theme != theme:
+    if window.session.settings.preferences.theme != theme:
         window.act(viewing.toggle_theme)
     window.act(playback.stop_playback)
     window.act(playback.seek, frame)

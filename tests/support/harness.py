@@ -18,6 +18,7 @@ from app.document import History
 from app.document.settings import Meshing
 from app.editor.action import do
 from app.editor.actions.project_files import files, saving
+from app.editor.parts.settings import SessionSettings
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
@@ -68,7 +69,9 @@ class Harness:
         self.clock = Clock()
         self.folder = Path(tempfile.mkdtemp(prefix="lissom-test-"))
         self.paints = False  # whether frames of which no picture is taken are drawn, too
-        self.session = Session(clock=self.clock, jobs=Jobs(), folder=self.folder)
+        self.session = Session(
+            clock=self.clock, jobs=Jobs(), settings=SessionSettings(folder=self.folder)
+        )
         self._tests = 0
         self._made: dict[tuple[object, ...], tuple[float, Project, Preferences]] = {}
         self.gl = create_context()
@@ -85,7 +88,9 @@ class Harness:
     def resize(self, size: tuple[int, int], scale: float = 1.0, *, density: float = 1.0) -> None:
         """Give the window another size in pixels, its contents another scale, or a finer screen."""
         self._screen.resize(size, density)
-        self.session.preferences = Preferences(scale=scale, theme=self.session.preferences.theme)
+        self.session.settings.preferences = Preferences(
+            scale=scale, theme=self.session.settings.preferences.theme
+        )
         self.frames(3)
 
     def reset(self) -> None:
@@ -96,7 +101,7 @@ class Harness:
             # A test that failed has left a worker behind: the next ones are not to wait for it.
             jobs = Jobs()
         jobs.deliver()
-        fresh = Session(clock=self.clock, jobs=jobs, folder=self.folder)
+        fresh = Session(clock=self.clock, jobs=jobs, settings=SessionSettings(folder=self.folder))
         saving.set_project(self.session, None)
         for field in fields(Session):
             if field.name not in {"screen", "full_detail", "diagnostics", "revision"}:
@@ -104,9 +109,9 @@ class Harness:
         fresh.diagnostics.note_graphics(self.session.diagnostics.graphics)
         self.session.diagnostics = fresh.diagnostics
         # Small meshes, and nothing that nobody looks at, so that the tests are quick.
-        self.session.meshing = Meshing(triangles=2_000, detail="coarse")
-        self.session.prepares_ahead = False
-        self.session.autosave.remove()
+        self.session.settings.default_meshing = Meshing(triangles=2_000, detail="coarse")
+        self.session.settings.prepares_ahead = False
+        self.session.settings.autosave.remove()
         for leftover in self.folder.iterdir():
             leftover.unlink()
         self.frames()
@@ -129,20 +134,28 @@ class Harness:
 
         Whoever asks for it has what may change in it for themselves.
         """
-        known, prepares_ahead = (make, *arguments), self.session.prepares_ahead
+        known, prepares_ahead = (make, *arguments), self.session.settings.prepares_ahead
         if known not in self._made:
             # Whichever test comes first, it has only what all of them look at.
-            self.session.prepares_ahead = False
+            self.session.settings.prepares_ahead = False
             make(self, *arguments)
             self.settle()
-            self.session.prepares_ahead = prepares_ahead
+            self.session.settings.prepares_ahead = prepares_ahead
             assert self.session.project is not None
-            self._made[known] = (self.clock.now, self.session.project, self.session.preferences)
-        made_at, made, self.session.preferences = self._made[known]
+            self._made[known] = (
+                self.clock.now,
+                self.session.project,
+                self.session.settings.preferences,
+            )
+        made_at, made, self.session.settings.preferences = self._made[known]
         project = own(made)
         project.moved_at += self.clock.now - made_at
         # What was kept of it went away with the test for which it was made.
-        project.autosaved, project.autosaved_at, project.changed_at = None, self.clock.now, None
+        project.file.autosaved, project.file.autosaved_at, project.file.changed_at = (
+            None,
+            self.clock.now,
+            None,
+        )
         saving.set_project(self.session, project)
         self.frames()
         if prepares_ahead:
@@ -163,7 +176,7 @@ class Harness:
 
     @property
     def _em(self) -> float:
-        return FONT_SIZE * self.session.preferences.scale
+        return FONT_SIZE * self.session.settings.preferences.scale
 
     @property
     def awaits_worker(self) -> bool:

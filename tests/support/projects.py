@@ -2,6 +2,7 @@
 
 from app.document import Document, History, clip_of
 from app.editor import LayerRuntime, Project
+from app.editor.parts.project_file import ProjectFile
 from app.storage import Picture
 from engine.arrays import Bytes
 
@@ -13,9 +14,8 @@ def project_of(document: Document, pixels: Bytes, name: str) -> Project:
         layer.id: LayerRuntime.of(clip_of(document, layer.id), picture) for layer in document.layers
     }
     return Project(
-        name=name,
+        file=ProjectFile(name=name),
         history=History(document, saved=True),
-        path=None,
         layer_runtimes=puppets,
         active=document.layers[0].id,
     )

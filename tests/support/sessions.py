@@ -9,6 +9,7 @@ from app.document import Document
 from app.editor import Jobs, Session, pending_changes
 from app.editor.actions import playback
 from app.editor.actions.frame_update import STEPS
+from app.editor.parts.settings import SessionSettings
 from engine.arrays import Bytes
 
 BLANK = np.zeros((90, 120, 4), np.uint8)
@@ -35,9 +36,8 @@ def session_of(
     session = Session(
         clock=lambda: 0.0,
         jobs=Jobs(),
-        folder=folder,
         project=project,
-        prepares_ahead=prepares_ahead,
+        settings=SessionSettings(folder=folder, prepares_ahead=prepares_ahead),
     )
     settle(session)
     return session

@@ -160,9 +160,9 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     return (
         *(project.document, project.history.position, project.active, project.selected_handles),
         *(playback.current_frame(session, project), project.playhead.since is None),
-        *(session.jobs.kinds, session.jobs.delivered, session.prepares_ahead),
+        *(session.jobs.kinds, session.jobs.delivered, session.settings.prepares_ahead),
         *(session.overlays, session.compare_view),
-        *(session.export_frame, project.awaits_extent, session.active_tool, session.records),
+        *(session.export.frame_box, project.awaits_extent, session.active_tool, session.records),
         *(project.selected_track, take, take and (take.is_over, len(take.samples))),
         *(project.unkeyed_pose, tuple(project.pending), tuple(map(_stage, project.pulls))),
         tuple(runtime.store for runtime in project.layer_runtimes.values()),
@@ -245,7 +245,7 @@ def due_jobs(session: Session, project: Project) -> Iterator[Job]:
         # The jobs below take longer than a pause of the drag.
         return
     yield from _compute_joints(session, project)
-    if not session.prepares_ahead:
+    if not session.settings.prepares_ahead:
         return
     yield from _stream(session, project)
     yield from _measure(session, project)
@@ -255,12 +255,14 @@ def due_jobs(session: Session, project: Project) -> Iterator[Job]:
 
 def _asks_extent(session: Session, project: Project) -> bool:
     """Return whether the extent of the motion is awaited."""
-    return session.export_frame is not None or project.awaits_extent
+    return session.export.frame_box is not None or project.awaits_extent
 
 
 def _prepares_all(session: Session, project: Project) -> bool:
     """Return whether all frames are prepared, not only the shown one."""
-    return session.prepares_ahead or session.overlays.onion or _asks_extent(session, project)
+    return (
+        session.settings.prepares_ahead or session.overlays.onion or _asks_extent(session, project)
+    )
 
 
 def _clips(project: Project) -> list[tuple[Clip, LayerRuntime]]:

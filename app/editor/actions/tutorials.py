@@ -136,7 +136,10 @@ def _attached(session: Session, guide: TutorialState) -> TutorialState:
     if project is None:
         return guide
     return replace(
-        guide, project=project, handles=_handles(project.document), exported=session.exported
+        guide,
+        project=project,
+        handles=_handles(project.document),
+        exported=session.export.completed,
     )
 
 
@@ -151,7 +154,7 @@ def _advanced(session: Session, project: Project, guide: TutorialState) -> Tutor
     moves = any(map(_moves, project.document.layers))
     has_played = moves and (guide.has_played or project.playhead.since is not None)
     step = _next_step(project, guide, moves=moves, has_played=has_played)
-    exported = session.exported
+    exported = session.export.completed
     if exported is not guide.exported and guide.stage == step == "export":
         step = "done" if exported is not None and exported.format == FORMAT else step
     if (step, has_played, exported) == (guide.stage, guide.has_played, guide.exported):

@@ -138,8 +138,7 @@ def set_side_by_side(session: Session, beside: bool) -> None:  # noqa: FBT001 - 
 
 def set_onion_skin(session: Session, before: int, after: int, step: int) -> None:
     """Set the number of ghosts of the onion skin, and the frames between them."""
-    session.preferences = replace(
-        session.preferences,
+    session.settings.prefer(
         ghosts_before=min(max(before, 0), MOST_GHOSTS),
         ghosts_after=min(max(after, 0), MOST_GHOSTS),
         ghost_step=min(max(step, 1), LARGEST_GHOST_STEP),
@@ -147,17 +146,17 @@ def set_onion_skin(session: Session, before: int, after: int, step: int) -> None
 
 
 def set_onion_skin_in_front(session: Session, in_front: bool) -> None:  # noqa: FBT001 - a checkbox's
-    session.preferences = replace(session.preferences, ghosts_in_front=in_front)
+    session.settings.prefer(ghosts_in_front=in_front)
 
 
 def set_path_range(session: Session, reach: int) -> None:
     """Set how many frames around the playhead motion paths cover; 0 means all played frames."""
-    session.preferences = replace(session.preferences, path_reach=reach)
+    session.settings.prefer(path_reach=reach)
 
 
 def set_backdrop(session: Session, backdrop: str) -> None:
     """Set the backdrop behind the drawing: "checker" or "#rrggbb"."""
-    session.preferences = replace(session.preferences, backdrop=backdrop)
+    session.settings.prefer(backdrop=backdrop)
 
 
 @with_project
@@ -168,8 +167,8 @@ def preview_meshing(_: Session, project: Project, meshing: Meshing) -> None:
 
 def toggle_theme(session: Session) -> None:
     """Switch between the dark and the light theme."""
-    theme: ThemeName = "light" if session.preferences.theme == "dark" else "dark"
-    session.preferences = replace(session.preferences, theme=theme)
+    theme: ThemeName = "light" if session.settings.preferences.theme == "dark" else "dark"
+    session.settings.prefer(theme=theme)
 
 
 def enlarge_interface(session: Session) -> None:
@@ -181,8 +180,8 @@ def shrink_interface(session: Session) -> None:
 
 
 def _scale_interface(session: Session, step: float) -> None:
-    scale = min(max(session.preferences.scale + step, SMALLEST_SCALE), LARGEST_SCALE)
-    session.preferences = replace(session.preferences, scale=scale)
+    scale = min(max(session.settings.preferences.scale + step, SMALLEST_SCALE), LARGEST_SCALE)
+    session.settings.prefer(scale=scale)
 
 
 def focus_timeline(session: Session, in_timeline: bool) -> None:  # noqa: FBT001 - the only argument
@@ -192,8 +191,8 @@ def focus_timeline(session: Session, in_timeline: bool) -> None:  # noqa: FBT001
 
 def toggle_auto_key(session: Session) -> None:
     """Switch auto-key: whether posing makes and changes keys."""
-    auto_key = not session.preferences.auto_key
-    session.preferences = replace(session.preferences, auto_key=auto_key)
+    auto_key = not session.settings.preferences.auto_key
+    session.settings.prefer(auto_key=auto_key)
 
 
 def show_dialog(session: Session, dialog: Dialog) -> None:
@@ -209,7 +208,7 @@ def browse_files(session: Session, dialog: FileDialog) -> None:
 def choose_file(session: Session, dialog: FileDialog, path: Path) -> None:
     """Give a path to the file dialog's action; the next file dialog opens in its folder."""
     session.dialogs.close()
-    session.preferences = replace(session.preferences, folder=path.parent)
+    session.settings.prefer(folder=path.parent)
     dialog.chosen(path).apply(session)
 
 

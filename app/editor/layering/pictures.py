@@ -64,7 +64,7 @@ def make_posable(session: Session, project: Project, identity: int) -> None:
     imported = ImportedLayer(
         name=layer.name, data=layer.picture.data, picture=picture, corner=layer.corner
     )
-    meshing = session.meshing
+    meshing = session.settings.default_meshing
 
     def work() -> Layer:
         return place_as_layer(_shape(imported, identity, meshing).layer, layer)
@@ -116,7 +116,7 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
 
     def done(begun: tuple[KeyResolver, _LoadedLayer]) -> None:
         resolver, made = begun
-        project.drawings.add(path)
+        project.file.add_drawings(path)
         project.pictures[made.layer.picture] = made.picture
         resolving.begin_solving_keys(session, resolver)
         if resolver.before in project.document.layers:
@@ -134,7 +134,7 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
 @with_project
 def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> None:
     """Add pictures, and the layers of drawings, in front of all layers."""
-    meshing, before = session.meshing, project.document
+    meshing, before = session.settings.default_meshing, project.document
     canvas = before.canvas
 
     def work() -> tuple[list[_LoadedLayer], ImportLog, Sequence[Group]]:
@@ -161,7 +161,7 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
 
     def done(read: tuple[list[_LoadedLayer], ImportLog, Sequence[Group]]) -> None:
         made, summary, groups = read
-        project.drawings.update(paths)
+        project.file.add_drawings(*paths)
         gesture = object()
         project.history.do(layer_commands.append_import_log(summary), gesture=gesture)
         project.history.do(group_commands.add_groups(groups), gesture=gesture)

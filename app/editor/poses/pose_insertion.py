@@ -62,7 +62,7 @@ def insert_poses(
         at = project.document.layer(layer).source_of(frame) if is_pose else frame
         moved = [key.copied(key.frame + at - first) for key in keys]
         if is_pose:
-            easing = session.preferences.easing
+            easing = session.settings.preferences.easing
             command = key_commands.insert_pose(layer, at, moved[0].pose, easing)
         else:
             command = channel_commands.insert_keys({pose_channel(layer): moved})

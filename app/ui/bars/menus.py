@@ -63,7 +63,7 @@ def draw_main_menu(
 def _backdrops(session: Session) -> list[Action]:
     if not imgui.begin_menu(_("Backdrop")):
         return []
-    current = session.preferences.backdrop
+    current = session.settings.preferences.backdrop
     actions = [
         do(viewing.set_backdrop, backdrop)
         for name, backdrop in BACKDROPS.items()
@@ -92,7 +92,7 @@ def _tabs(session: Session, panels: Sequence[Panel]) -> list[Action]:
 def _path_reaches(session: Session) -> list[Action]:
     if not imgui.begin_menu(_("Motion path frames")):
         return []
-    current = session.preferences.path_reach
+    current = session.settings.preferences.path_reach
     actions = [
         do(viewing.set_path_range, reach)
         for reach, name in PATH_REACHES.items()
@@ -109,7 +109,7 @@ def _new_keys(session: Session) -> list[Action]:
     actions = [
         do(keys.set_default_easing, preset)
         for name, preset in PRESETS.items()
-        if imgui.menu_item(EASINGS[name], "", preset == session.preferences.easing)[0]
+        if imgui.menu_item(EASINGS[name], "", preset == session.settings.preferences.easing)[0]
     ]
     imgui.end_menu()
     return actions

@@ -158,7 +158,7 @@ def describe_motion_limit(session: Session) -> str:
 
 def _export(session: Session) -> str:
     """Return the progress of the running export in words; else ""."""
-    run = session.export
+    run = session.export.run
     if run is None:
         return ""
     if run.for_clipboard:

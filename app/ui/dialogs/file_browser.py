@@ -79,7 +79,7 @@ class FileBrowser:
         if appears:
             self._usual, self._recent = (
                 list_standard_shortcuts(),
-                list_recent_shortcuts(session.preferences.recent),
+                list_recent_shortcuts(session.settings.preferences.recent),
             )
         now = _way(dialog, look, size.x)
         now, by_key = self._step(now)

@@ -176,7 +176,7 @@ def _size(
     room = 2 * (1.15 * imgui.get_frame_height() + gap)
     entered = draw_size_fields("", view.size, room)
     imgui.same_line(0, gap)
-    keeps = session.is_aspect_locked
+    keeps = session.export.is_aspect_locked
     icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
     if icon_button(look, icon, "keep ratio", _("Keep proportions"), active=keeps):
         actions.append(do(export_settings.set_aspect_locked, not keeps))
@@ -270,7 +270,7 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     imgui.same_line(0, gap)
     if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", _("Choose the output…")):
         actions.append(do(export_settings.ask_export_destination))
-    run = session.export
+    run = session.export.run
     if exporting.is_export_under_way(session):
         # A negative share animates the bar without a value.
         share, text = -0.5 * imgui.get_time(), _("Preparing…")

@@ -617,7 +617,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             "K",
             icon=icons.ICON_FA_KEY,
             hint=_("Set keys by posing"),
-            active=lambda session: session.preferences.auto_key,
+            active=lambda session: session.settings.preferences.auto_key,
         ),
         "record": ActionSpec(
             _("Record drag"),

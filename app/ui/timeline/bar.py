@@ -196,7 +196,7 @@ def _speed(project: Project) -> list[Action]:
 
 def _onion_skin(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
-    overlays, preferences = session.overlays, session.preferences
+    overlays, preferences = session.overlays, session.settings.preferences
     binding = BINDINGS["onion skin"]
     hint = _("Onion skin: the poses shown before and after this frame")
     if icon_button(look, binding.icon, "onion skin", hint, active=overlays.onion):

@@ -144,8 +144,8 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.document.switch_groups,
         project.solo,
         session.overlays,
-        session.export_frame,
-        session.preferences,
+        session.export.frame_box,
+        session.settings.preferences,
         pixel_scale(session),
     )
 
@@ -165,7 +165,7 @@ def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
 def _scene(
     session: Session, project: Project, shown: DisplayedFrame, drawing: GpuResources
 ) -> Scene:
-    palette = PALETTES[session.preferences.theme]
+    palette = PALETTES[session.settings.preferences.theme]
     overlays = session.overlays
     runtimes = project.layer_runtimes.values()
     drawing.release_but({mesh for runtime in runtimes for mesh in _meshes(runtime)})
@@ -174,7 +174,7 @@ def _scene(
         scale = pixel_scale(session)
         return Scene(
             background=make_backdrop(
-                session.preferences.backdrop, palette, drawing.brightness, scale
+                session.settings.preferences.backdrop, palette, drawing.brightness, scale
             ),
             meshes=drawing.cut_view().meshes(),
             discs=mark_holes(project, palette, scale) if session.cutting == "holes" else (),
@@ -191,7 +191,7 @@ def _scene(
     meshes = _posed(session, project, shows, drawing)
     return Scene(
         background=make_backdrop(
-            session.preferences.backdrop, palette, drawing.brightness, pixel_scale(session)
+            session.settings.preferences.backdrop, palette, drawing.brightness, pixel_scale(session)
         ),
         meshes=meshes,
         heat=heat,

@@ -23,7 +23,7 @@ DOT, KEY_DOT = 2.4, 4.4  # pixels: radius of a frame on a path, and of a key
 
 def pixel_scale(session: Session) -> float:
     """Return how many pixels of the picture one pixel of the design takes."""
-    return interface_scale(session.preferences.scale) * pixel_density()
+    return interface_scale(session.settings.preferences.scale) * pixel_density()
 
 
 def to_rgba(colour: ImVec4, alpha: float = 1.0) -> Colour:
@@ -49,8 +49,8 @@ def mark_all(
         colours = to_rgba(palette.accent), to_rgba(palette.text), to_rgba(palette.desk, 0.8)
         path_lines, path_dots = mark_path(project, *colours, scale)
         lines, dots = [*lines, *path_lines], (*dots, *path_dots)
-    if session.export_frame is not None:
-        lines.append(_frame(session.export_frame, palette, scale))
+    if session.export.frame_box is not None:
+        lines.append(_frame(session.export.frame_box, palette, scale))
     is_playing = project.playhead.since is not None and project.recording is None
     if not session.overlays.handles or is_playing or project.motion_setup is not None:
         return tuple(lines), dots
@@ -205,7 +205,7 @@ def transform_loops(shown: DisplayedFrame) -> list[Complexes]:
 
 def _frames_of_paths(session: Session, project: Project, paths: MotionPaths) -> Booleans:
     """Return which frames paths cover: the played ones, or some around the playhead."""
-    played, reach = project.document.played_frames, session.preferences.path_reach
+    played, reach = project.document.played_frames, session.settings.preferences.path_reach
     frames = (paths.frames >= played.first) & (paths.frames <= played.last)
     return frames & (abs(paths.frames - project.playhead.frame) <= reach) if reach else frames
 

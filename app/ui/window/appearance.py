@@ -24,7 +24,7 @@ class Appearance:
         """Return the look of a frame; `places` collects rectangles of its items."""
         if self._bold is None:
             raise RuntimeError("the window has no fonts before its first frame")
-        preferences = self._session.preferences
+        preferences = self._session.settings.preferences
         return Look(
             palette=PALETTES[preferences.theme],
             bold=self._bold,
@@ -45,7 +45,7 @@ class Appearance:
         implot.create_context()
 
     def apply_theme(self) -> None:
-        preferences = self._session.preferences
+        preferences = self._session.settings.preferences
         self._themed = self._theme
         palette = PALETTES[preferences.theme]
         apply_theme(palette, preferences.scale)
@@ -54,5 +54,5 @@ class Appearance:
     @property
     def _theme(self) -> tuple[str, float]:
         """The inputs of the style: the theme, and the interface scale on this screen."""
-        preferences = self._session.preferences
+        preferences = self._session.settings.preferences
         return preferences.theme, interface_scale(preferences.scale)

@@ -22,7 +22,7 @@ class Exporter:
 
     def step(self, session: Session) -> None:
         """Draw some frames of the session's export. Release the export if it was cancelled."""
-        run = session.export
+        run = session.export.run
         if run is None or run.plan is not self._plan:
             self.release()
         if run is None:
@@ -47,7 +47,7 @@ class Exporter:
             given = run.document, run.pictures, run.poses, run.plan
             is_drawn = EXPORT_FORMATS[run.plan.format].is_drawn
             self._maker = FrameRenderer(self._context, *given) if is_drawn else MeshExport(*given)
-            self._steps = self._maker.run(waits=False, cancellation=session.cancellation)
+            self._steps = self._maker.run(waits=False, cancellation=session.export.cancellation)
         begun = session.clock()
         drawn = run.done
         for done in self._steps:

@@ -206,13 +206,13 @@ def _state(session: Session) -> tuple[object, ...]:
     own = (
         *(
             session.dialogs.current,
-            session.preferences,
+            session.settings.preferences,
             session.overlays,
             session.compare_view,
             session.tint,
         ),
         *(session.cutting, session.material, session.moves, session.records, session.screen),
-        *(session.export, session.tutorial, session.curves, bool(session.jobs.kinds), project),
+        *(session.export.run, session.tutorial, session.curves, bool(session.jobs.kinds), project),
     )
     if project is None:
         return own

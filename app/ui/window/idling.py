@@ -39,7 +39,7 @@ def _is_busy(session: Session) -> bool:
     is_moving = project is not None and project.playhead.since is not None
     # The system's dialog has its own input. Its answer is polled.
     asks_system = session.dialogs.uses_system and isinstance(session.dialogs.current, FileDialog)
-    is_working = bool(session.jobs.kinds) or session.export is not None
+    is_working = bool(session.jobs.kinds) or session.export.run is not None
     is_working |= project is not None and bool(project.stale or project.deferred)
     return is_moving or is_working or asks_system or bool(session.notices.toasts)
 
@@ -49,7 +49,11 @@ def _awaits_in_between(session: Session) -> bool:
     project = session.project
     if project is None or project.playhead.since is not None or session.active_tool is not None:
         return False
-    if session.export is not None or session.notices.toasts or session.dialogs.current is not None:
+    if (
+        session.export.run is not None
+        or session.notices.toasts
+        or session.dialogs.current is not None
+    ):
         return False
     if {frame_update.GLIMPSING, frame_update.SKETCHING}.isdisjoint(session.jobs.kinds):
         return False

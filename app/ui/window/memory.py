@@ -32,7 +32,7 @@ class FreeMemory:
         is_playing = project is not None and project.playhead.since is not None
         if has_closed:
             self._give(now)
-        if session.jobs.kinds or session.export is not None or is_playing:
+        if session.jobs.kinds or session.export.run is not None or is_playing:
             self._due = now + REST
             is_watched = is_playing or (project is not None and project.is_posing)
             if now >= self._given + WORK and not is_watched:

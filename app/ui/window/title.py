@@ -11,6 +11,8 @@ def window_title(session: Session) -> str:
     project = session.project
     if project is None:
         return NAME
-    name = display_name(project.path.name) if project.path is not None else project.name
+    name = (
+        display_name(project.file.path.name) if project.file.path is not None else project.file.name
+    )
     mark = "" if project.history.is_saved else "*"
     return f"{name}{mark} – {NAME}"

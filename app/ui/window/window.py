@@ -122,7 +122,7 @@ class Window:
             release_stuck_modifiers, calls.pre_new_frame
         )
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
-        ini = str(self.session.folder / "window.ini")
+        ini = str(self.session.settings.folder / "window.ini")
         params.ini_filename = display_name(ini)
         params.ini_disable = params.ini_filename != ini  # ImGui writes only UTF-8 names
         params.app_window_params.window_geometry.size = SIZE

@@ -216,9 +216,10 @@ class WindowFrame:
         session = self.session
         self._seen, self._places = self._places, {}
         self._appearance.begin_frame()
-        self._docking.begin_frame(interface_scale(session.preferences.scale))
+        self._docking.begin_frame(interface_scale(session.settings.preferences.scale))
         # The tabs that show these set them again in every frame.
-        session.export_frame = session.pointed_layer = None
+        session.export.show_frame_box(None)
+        session.pointed_layer = None
         if session.project is not None and session.project.playhead.since is not None:
             playback.stop_playback_at_end(session)
             # Before the panels, which read the playhead's frame.

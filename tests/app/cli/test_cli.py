@@ -215,7 +215,7 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
             def keep():
                 begun.set()
                 left.wait()
-                session.autosave.write(disc_document(), SourceInfo("disc", None))
+                session.settings.autosave.write(disc_document(), SourceInfo("disc", None))
 
             session.jobs.put(Job(kind=autosaving.AUTOSAVING, work=keep, done=print, failed=print))
             begun.wait()

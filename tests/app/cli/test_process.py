@@ -19,6 +19,8 @@ from app.document.commands import scene_commands
 from app.editor import error_reports
 from app.editor.actions.project_files import autosaving
 from app.editor.parts.dialogs import ProblemReport
+from app.editor.parts.project_file import ProjectFile
+from app.editor.parts.settings import SessionSettings
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
@@ -143,9 +145,8 @@ class EndedWindow:
     def run(self, *, is_over, farewell):
         document = disc_document()
         project = Project(
-            name="disc",
+            file=ProjectFile(name="disc"),
             history=History(document, saved=True),
-            path=None,
             layer_runtimes={},
             active=0,
         )
@@ -221,7 +222,7 @@ def test_unsaved_work_is_kept_when_the_display_is_lost(tmp_path, monkeypatch, ca
             history = History(disc_document(), saved=True)
             history.do(scene_commands.add_marker(0, "unsaved"))
             self.session.project = Project(
-                name="disc", history=history, path=None, layer_runtimes={}, active=0
+                file=ProjectFile(name="disc"), history=history, layer_runtimes={}, active=0
             )
             display.handler(None)
             assert list(tmp_path.rglob("unsaved-*.lissom"))
@@ -251,7 +252,7 @@ def test_where_a_process_crashed_is_kept_for_the_next_start(tmp_path):
         [sys.executable, "-c", CRASH, str(tmp_path)], cwd=Path(__file__).parents[3], check=False
     )
     assert ended.returncode == -signal.SIGABRT
-    session = Session(clock=float, jobs=Jobs(), folder=tmp_path)
+    session = Session(clock=float, jobs=Jobs(), settings=SessionSettings(folder=tmp_path))
     error_reports.keep_fault_report(session)
     assert "Fatal Python error: Aborted" in load_report(tmp_path)
     error_reports.discard_report(session, ProblemReport(text="", is_kept=True))

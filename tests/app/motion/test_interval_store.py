@@ -21,6 +21,7 @@ from app.document.settings import FrameRange
 from app.editor.actions import editing, viewing
 from app.editor.actions.frame_update import STREAMING, due_jobs
 from app.editor.actions.timing import keys
+from app.editor.parts.settings import SessionSettings
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
 from app.editor.work.pull import Pull
@@ -466,7 +467,9 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
     document, clip, tmp_path, monkeypatch
 ):
     project = project_of(document, np.zeros((90, 120, 4), np.uint8), "blob")
-    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path, project=project)
+    session = Session(
+        clock=lambda: 0.0, jobs=Jobs(), project=project, settings=SessionSettings(folder=tmp_path)
+    )
     asked = []
 
     def settle():

@@ -25,7 +25,7 @@ def window(_only_window: Harness) -> Iterator[Harness]:
 @pytest.fixture
 def everything(window: Harness) -> None:
     """Prepare all in-betweens, corrections, series and measures, as the program does unasked."""
-    window.session.prepares_ahead = True
+    window.session.settings.prepares_ahead = True
 
 
 @pytest.fixture

@@ -47,7 +47,7 @@ def ready(window, loose, tmp_path, monkeypatch):
     )
     export = replace(loose.document.export, format="picture", framing="canvas")
     editing.edit_document(window.session, scene_commands.set_export(export))
-    loose.export_destinations["picture"] = tmp_path / "picture.png"
+    loose.exports.by_format["picture"] = tmp_path / "picture.png"
     saving.write_project(window.session, tmp_path / "a.lissom", None)
     playback.scrub(window.session, 0)
     window.settle()
@@ -120,7 +120,7 @@ def test_drag_is_a_step_beside_each_edit_that_follows(window, ready):
 
 @pytest.mark.parametrize("name", ALONE)
 def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
-    session, path = window.session, ready.path
+    session, path = window.session, ready.file.path
     start = ready.document
     goal = drag_bar(window, ready)
     assert ready.pulls
@@ -137,7 +137,9 @@ def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
         check_at_rest(load_project(path), goal)
         return
     session.dialogs.current = None
-    window.until(lambda: session.export is None and exporting.PREPARING not in session.jobs.kinds)
+    window.until(
+        lambda: session.export.run is None and exporting.PREPARING not in session.jobs.kinds
+    )
     playback.stop_playback(session)
     check_invariants(session)
     if name == "save":

@@ -38,7 +38,7 @@ FILLED = (("on_accent", "accent"), ("on_accent", "warning"), ("on_accent", "text
 
 
 def show_in(window, theme):
-    if window.session.preferences.theme != theme:
+    if window.session.settings.preferences.theme != theme:
         viewing.toggle_theme(window.session)
     window.frames(3)
 
@@ -101,10 +101,10 @@ def test_each_colour_of_texts_stands_out_from_each_surface(window, theme):
 
 
 def test_the_welcome_view(window, tmp_path, check):
-    preferences = window.session.preferences
+    preferences = window.session.settings.preferences
     for path in (sample_images() / "bar.png", tmp_path / "gone.png"):
         preferences = preferences.with_recent(path)
-    window.session.preferences = preferences
+    window.session.settings.preferences = preferences
     check("welcome")
 
     def point(robot):

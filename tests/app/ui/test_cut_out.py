@@ -1,7 +1,6 @@
 """Cutting out by hand in the window: brush, pipette, mask, holes, and how the mesh follows."""
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pictures
@@ -395,7 +394,7 @@ def test_paper_that_is_left_inside_is_tinted(window):
 @pytest.mark.usefixtures("line_art")
 def test_the_canvas_suits_lines_whose_paper_was_removed(window):
     """In the dark theme they are seen as long as their paper is there, and must be without it."""
-    window.session.preferences = replace(window.session.preferences, theme="dark")
+    window.session.settings.prefer(theme="dark")
     outside = complex(-10, SIZE / 2)
     assert pixel(window, outside).max() < 80
     window.act(cut_out_editing.set_enclosed_removed, "remove")

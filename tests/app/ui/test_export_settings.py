@@ -54,7 +54,7 @@ def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path)
 
     def press(robot):
         for _ in range(2):
-            seen.append((session.export_frame is not None, session.dialogs.current is not None))
+            seen.append((session.export.frame_box is not None, session.dialogs.current is not None))
             robot.key_press(CTRL_E)
             robot.yield_(3)
 
@@ -64,7 +64,7 @@ def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path)
     assert session.dialogs.current.name == "bar.gif"
     session.dialogs.current = replace(session.dialogs.current, folder=tmp_path)
     window.run(lambda robot: robot.item_click("//###dialog/Export"))
-    window.until(lambda: (tmp_path / "bar.gif").exists() and session.export is None)
+    window.until(lambda: (tmp_path / "bar.gif").exists() and session.export.run is None)
     # To choose a place begins nothing.
     window.show_tab("Export")
     window.run(lambda robot: robot.item_click("//Export/**/###choose output"))
@@ -73,7 +73,7 @@ def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path)
     window.run(lambda robot: robot.key_chars("other.gif"))
     window.run(lambda robot: robot.item_click("//###dialog/Choose"))
     window.settle()
-    assert loose.export_destinations == {"gif": tmp_path / "other.gif"}
+    assert loose.exports.by_format == {"gif": tmp_path / "other.gif"}
     assert [path.name for path in tmp_path.iterdir()] == ["bar.gif"]
 
 
@@ -136,7 +136,7 @@ def test_another_format_of_the_same_name_asks_before_it_replaces(window, tmp_pat
     keys.set_last_frame(session, 24)
     export_settings.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
     window.act(export_settings.start_export_at, tmp_path / "walk.png")
-    window.until(lambda: (tmp_path / "walk.json").exists() and session.export is None)
+    window.until(lambda: (tmp_path / "walk.json").exists() and session.export.run is None)
     sheet = (tmp_path / "walk.png").read_bytes()
     choose("apng")
     window.show_tab("Export")
@@ -165,8 +165,8 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     window.clock.cost = 0.02
     try:
         window.act(exporting.start_export, tmp_path / "walk frames")
-        window.until(lambda: session.export is not None and session.export.done > 2)
-        total = len(session.export.plan.times)
+        window.until(lambda: session.export.run is not None and session.export.run.done > 2)
+        total = len(session.export.run.plan.times)
         texts = [text for text in written if text.startswith("Exporting walk frames: ")]
         assert texts
         assert all(text.endswith(f" of {total}") for text in texts)
@@ -174,10 +174,10 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     finally:
         window.clock.cost = 0.0
     window.frames()
-    assert session.export is None
+    assert session.export.run is None
     assert any(toast.text == exporting.CANCELLED_MIDWAY for toast in session.notices.toasts)
     written.clear()
     window.frames(2)
     assert not any("walk frames" in text for text in written)
-    assert loose.export_destinations == {"png": tmp_path / "walk frames"}
+    assert loose.exports.by_format == {"png": tmp_path / "walk frames"}
     assert len(heights) == 1, "nothing moves up and down meanwhile"

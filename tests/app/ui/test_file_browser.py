@@ -1,7 +1,6 @@
 """Our own file browser, through its widgets."""
 
 import os
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -116,7 +115,7 @@ def test_a_double_click_enters_a_folder_and_opens_a_file(window, show, folder, c
     click(window, entry("cow.png"), double=True)
     assert chosen == [folder / "drawings" / "cow.png"]
     assert window.session.dialogs.current is None
-    assert window.session.usual_folder == folder / "drawings"
+    assert window.session.settings.usual_folder == folder / "drawings"
 
 
 def test_a_click_marks_a_file_and_the_button_opens_it(window, show, folder, chosen):
@@ -246,7 +245,7 @@ def test_it_says_what_saving_would_replace(window, show):
 
 def coloured(picture, window):
     """Count the pixels that are nearly in the colour of warnings."""
-    palette = PALETTES[window.session.preferences.theme]
+    palette = PALETTES[window.session.settings.preferences.theme]
     warning = np.array([palette.warning.x, palette.warning.y, palette.warning.z]) * 255
     distance = np.abs(np.asarray(picture, dtype=float) - warning).max(axis=2)
     return int((distance < 40).sum())
@@ -341,7 +340,7 @@ def test_places_and_recent_folders_are_one_click_away(window, show, folder, monk
     monkeypatch.setenv("XDG_CONFIG_HOME", str(settings))
     recent = (folder / "drawings" / "cow.png", folder / "drawings" / "b.png", home / "no" / "c.png")
     session = window.session
-    session.preferences = replace(session.preferences, recent=recent)
+    session.settings.prefer(recent=recent)
     assert [place.name for place in list_standard_shortcuts()] == ["Home", "Desktop", "Bilder"]
     assert [place.folder for place in list_recent_shortcuts(recent)] == [folder / "drawings"]
     show()

@@ -60,7 +60,7 @@ def change(window, project):
 
 def test_a_dropped_picture_opens(window, drop):
     drop(BAR)
-    assert window.session.project.name == "bar"
+    assert window.session.project.file.name == "bar"
     assert texts(window) == []
 
 
@@ -71,8 +71,8 @@ def test_a_dropped_project_opens(window, project, drop, tmp_path):
     window.act(saving.discard_project)
     drop(path)
     assert window.session.project is not project
-    assert window.session.project.path == path
-    assert window.session.preferences.recent[0] == path
+    assert window.session.project.file.path == path
+    assert window.session.settings.preferences.recent[0] == path
 
 
 def test_unknown_motion_is_reported(window, project, tmp_path):
@@ -101,7 +101,7 @@ def test_of_other_dropped_files_the_first_that_can_be_opened_opens(window, drop,
     notes = tmp_path / "notes.txt"
     notes.write_bytes(b"")
     drop(notes, RING)
-    assert window.session.project.name == "ring"
+    assert window.session.project.file.name == "ring"
     assert "Opened ring.png; only one file at a time." in texts(window)
 
 
@@ -163,7 +163,7 @@ def test_changes_are_asked_about_before_a_dropped_file_opens(window, project, dr
         assert window.session.project is project
         window.run(lambda robot, answer=answer: robot.item_click(f"//###dialog/{answer}"))
     window.settle()
-    assert window.session.project.name == "ring"
+    assert window.session.project.file.name == "ring"
 
 
 def test_changes_made_while_a_file_is_read_are_asked_about(window, project):
@@ -176,7 +176,7 @@ def test_changes_made_while_a_file_is_read_are_asked_about(window, project):
     assert len(project.layer.handles) == 1
     assert isinstance(window.session.dialogs.current, Question)
     window.run(lambda robot: robot.item_click("//###dialog/Don't save"))
-    assert window.session.project.name == "ring"
+    assert window.session.project.file.name == "ring"
 
 
 def test_changes_made_while_unsaved_work_is_read_are_asked_about(window, project, tmp_path):
@@ -234,7 +234,7 @@ def pass_time(window, seconds):
 def test_the_autosave_comes_some_time_after_a_change(window, project, kept):
     pass_time(window, SECONDS)
     assert kept() is None
-    project.autosaved_at = window.clock.now
+    project.file.autosaved_at = window.clock.now
     change(window, project)
     pass_time(window, SECONDS - 1)
     assert kept() is None
@@ -247,7 +247,7 @@ def test_the_autosave_comes_some_time_after_a_change(window, project, kept):
 
 
 def test_more_changes_are_kept_in_its_place(window, project, kept):
-    project.autosaved_at = window.clock.now
+    project.file.autosaved_at = window.clock.now
     change(window, project)
     pass_time(window, SECONDS)
     assert kept() == 1
@@ -259,7 +259,7 @@ def test_more_changes_are_kept_in_its_place(window, project, kept):
 
 
 def test_refused_autosave_is_reported_once(window, project, kept, monkeypatch):
-    project.autosaved_at = window.clock.now
+    project.file.autosaved_at = window.clock.now
     change(window, project)
     pass_time(window, SECONDS)
     assert kept() == 1
@@ -277,10 +277,10 @@ def test_refused_autosave_is_reported_once(window, project, kept, monkeypatch):
 
 
 def test_the_autosave_waits_for_the_hand_but_not_for_ever(window, project, kept):
-    project.autosaved_at = window.clock.now
+    project.file.autosaved_at = window.clock.now
     change(window, project)
     place = complex(*project.document.canvas) / 2
-    project.autosaved_at -= SECONDS
+    project.file.autosaved_at -= SECONDS
     with window.session.jobs.held(POSING):
         drag_handles(window.session, {0: Target(position=place)})
         window.clock.now += SECONDS / 2
@@ -342,7 +342,7 @@ def test_the_autosave_goes_with_work_that_is_given_up(window, project, kept, ver
 @pytest.mark.parametrize("verb", [saving.discard_project, editing.undo])
 def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, verb):
     with window.session.jobs.held(autosaving.AUTOSAVING):
-        project.autosaved_at = window.clock.now
+        project.file.autosaved_at = window.clock.now
         change(window, project)
         pass_time(window, SECONDS)
         assert autosaving.AUTOSAVING in window.session.jobs.kinds
@@ -401,7 +401,7 @@ def test_preferences_are_kept_as_soon_as_they_change(window):
     window.act(viewing.enlarge_interface)
     window.settle()
     kept = load_preferences(window.folder)
-    assert kept == window.session.preferences
+    assert kept == window.session.settings.preferences
     assert (kept.ghosts_before, kept.ghosts_after, kept.ghost_step) == (1, 6, 24)
     assert kept.scale == 1.25
 

@@ -100,7 +100,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     out = tmp_path / "frames"
     export_settings.set_export_settings(session, ExportSettings(framing="canvas"))
     exporting.start_export(session, out)
-    while session.export is not None or session.jobs.kinds:
+    while session.export.run is not None or session.jobs.kinds:
         window.settle()
     names = sorted(file.name for file in out.iterdir())
     assert names == [f"frame_{frame:04d}.png" for frame in range(49)]
@@ -190,7 +190,7 @@ def test_a_pose_that_is_held_is_of_the_frame_that_the_playhead_is_on(window, bar
 
 def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
     session = window.session
-    session.meshing = Meshing(triangles=30_000)
+    session.settings.default_meshing = Meshing(triangles=30_000)
     project = window.open(BAR)
     session.full_detail = False
     window.frames(30)
@@ -286,7 +286,7 @@ def test_a_key_between_keys_starts_from_what_is_shown(window, bar):
 def test_without_auto_key_a_pose_is_loose_until_it_is_inserted(window, bar):
     session = window.session
     window.run(lambda robot: robot.key_press(int(window.Key.k)))
-    assert not session.preferences.auto_key
+    assert not session.settings.preferences.auto_key
     playback.seek(session, 12)
     start = handle_places(bar)[1]
     window.run(lambda robot: drag(robot, window, start, start + 100j))
@@ -588,10 +588,10 @@ def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
     window.run(decline)
     assert session.dialogs.current is None
     assert session.project is bar
-    bar.path = tmp_path / "kept.lissom"
+    bar.file.path = tmp_path / "kept.lissom"
     saving.save_then(session, do(saving.discard_project))
     window.settle()
-    assert bar.path.is_file()
+    assert bar.file.path.is_file()
     assert session.project is None
 
 

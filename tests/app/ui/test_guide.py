@@ -55,7 +55,7 @@ class Pupil(Newcomer):
     def export(self, folder):
         """Export what the tab Export has, to where the dialog proposes it in a folder."""
         session = self.window.session
-        session.preferences = type(session.preferences)(folder=folder)
+        session.settings.preferences = type(session.settings.preferences)(folder=folder)
         self.click("//Export/**/###start")
         self.click("//###dialog/Export")
         self.window.until(lambda: not exporting.is_export_under_way(session))
@@ -112,7 +112,7 @@ def test_the_giraffe_bows(window):
     pupil.click("//Welcome/**/make it bow")
     pupil.reach("handle")
     session, project = window.session, window.session.project
-    assert project.path is None
+    assert project.file.path is None
     assert [len(project.layer.keys), len(project.layer.handles)] == [1, 7]
     export = project.document.export
     assert (export.format, export.size) == (tutorials.FORMAT, tutorials.SIZE)

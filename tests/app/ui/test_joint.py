@@ -462,7 +462,7 @@ def test_ghosts_are_in_front_when_the_person_asks(window, nodding):
         robot.popup_close_all()
 
     window.run(put)
-    assert window.session.preferences.ghosts_in_front
+    assert window.session.settings.preferences.ghosts_in_front
     window.settle()
     front = np.asarray(window.picture()).astype(int)[..., :3]
     assert np.abs(around(window, front, at) - around(window, plain, at)).max() > 20

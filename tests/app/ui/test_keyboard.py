@@ -226,10 +226,10 @@ def test_the_layout_can_be_put_back(window):
 def test_recent_files_that_are_gone_are_marked_and_taken_off_by_a_click(window, tmp_path, place):
     there, gone = tmp_path / "there.png", tmp_path / "gone.png"
     there.write_bytes((sample_images() / "bar.png").read_bytes())
-    preferences = window.session.preferences
+    preferences = window.session.settings.preferences
     for path in (gone, there):
         preferences = preferences.with_recent(path)
-    window.session.preferences = preferences
+    window.session.settings.preferences = preferences
     window.frames(3)
 
     def open_gone(robot):
@@ -243,7 +243,7 @@ def test_recent_files_that_are_gone_are_marked_and_taken_off_by_a_click(window, 
     window.run(open_gone)
     window.settle()
     assert window.session.project is None
-    assert window.session.preferences.recent == (there,)
+    assert window.session.settings.preferences.recent == (there,)
     (toast,) = window.session.notices.toasts
     assert toast.text.startswith(f"gone.png is no longer in {tmp_path}.")
 
@@ -253,7 +253,7 @@ def test_recent_files_that_are_gone_are_marked_and_taken_off_by_a_click(window, 
 
     window.run(open_recent)
     window.settle()
-    assert window.session.project.name == "there"
+    assert window.session.project.file.name == "there"
 
 
 @pytest.mark.usefixtures("loose")

@@ -173,15 +173,15 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
     assert ghost.motion_setup.applied_motion is given
     preset_setup.set_motion_parameters(window.session, speed=4.0)
     apply_motion.apply_motion_preset(window.session)
-    ghost.path = tmp_path / "ghost.lissom"
+    ghost.file.path = tmp_path / "ghost.lissom"
     saving.save(window.session)
     arrive(window, ghost)
-    window.until(lambda: ghost.path.exists() and not ghost.pending)
+    window.until(lambda: ghost.file.path.exists() and not ghost.pending)
     (again,) = ghost.layer.motions
     assert again.last < given.last
     assert ghost.document.frames.last == again.last == ghost.layer.keys[-1].frame
     assert is_motion_unedited(ghost.layer, again)
-    assert load_project(ghost.path).layers[0].motions == (again,)
+    assert load_project(ghost.file.path).layers[0].motions == (again,)
     editing.undo(window.session)
     assert ghost.document is before
 

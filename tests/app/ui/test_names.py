@@ -53,7 +53,7 @@ def press(window, *names):
 
 
 def test_a_picture_is_opened_under_a_name_that_can_be_shown(window, opened):
-    assert opened.name == opened.layer.name == SHOWN
+    assert opened.file.name == opened.layer.name == SHOWN
     window.show_tab("Layers")
     assert messages(window) == []
 
@@ -69,7 +69,11 @@ def test_a_project_is_saved_and_found_among_the_recent_files(window, folder):
     assert messages(window) == [f"Saved {SHOWN}.lissom."]
     window.settle()
     recent = (path, folder / f"{NAME}.png")
-    assert load_preferences(window.folder).recent == window.session.preferences.recent == recent
+    assert (
+        load_preferences(window.folder).recent
+        == window.session.settings.preferences.recent
+        == recent
+    )
 
     def choose(robot):
         robot.set_ref("##MainMenuBar")
@@ -77,8 +81,8 @@ def test_a_project_is_saved_and_found_among_the_recent_files(window, folder):
 
     window.run(choose)
     window.settle()
-    assert window.session.project.path == path
-    assert window.session.project.name == SHOWN
+    assert window.session.project.file.path == path
+    assert window.session.project.file.name == SHOWN
 
 
 @pytest.mark.usefixtures("opened")
@@ -111,7 +115,7 @@ def test_unsaved_work_is_offered_under_the_name(window, opened, folder):
     assert messages(window) == []
     window.run(lambda robot: robot.item_click("//###dialog/**/Open"))
     window.settle()
-    assert window.session.project.path == folder / f"{NAME}.lissom"
+    assert window.session.project.file.path == folder / f"{NAME}.lissom"
     assert len(messages(window)) == 1
 
 

@@ -123,7 +123,7 @@ def test_a_picture_is_opened_and_the_window_does_not_wait(window, program):
     asked = program.asked()
     assert "--file-selection" in asked
     assert "--save" not in asked
-    assert f"--filename={window.session.usual_folder}/" in asked
+    assert f"--filename={window.session.settings.usual_folder}/" in asked
     (patterns,) = [word for word in asked if word.startswith(".lissom, ")]
     assert "*.lissom" in patterns
     assert "*.png *.PNG" in patterns
@@ -135,8 +135,8 @@ def test_a_picture_is_opened_and_the_window_does_not_wait(window, program):
     program.wait_for_the_window()
     assert window.session.dialogs.current is None
     window.settle()
-    assert window.session.project.name == "bar"
-    assert window.session.usual_folder == sample_images()
+    assert window.session.project.file.name == "bar"
+    assert window.session.settings.usual_folder == sample_images()
 
 
 def test_saving_asks_before_it_replaces_and_adds_the_suffix(program, ask, chosen, tmp_path):

@@ -29,10 +29,10 @@ def test_a_loop_takes_few_clicks_and_drags(window, tmp_path):
     window.frames(20)
     assert project.playhead.since is not None
     person.show_tab("Export")
-    session.preferences = type(session.preferences)(folder=tmp_path)
+    session.settings.preferences = type(session.settings.preferences)(folder=tmp_path)
     person.click("//Export/**/###start")
     person.click("//###dialog/Export")
-    while session.export is not None or session.jobs.kinds:
+    while session.export.run is not None or session.jobs.kinds:
         window.settle()
     exported = sorted(next(tmp_path.glob("* frames")).glob("*.png"))
     count = project.document.frames.last - project.document.frames.first

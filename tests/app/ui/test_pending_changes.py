@@ -165,14 +165,14 @@ def test_a_picture_is_exported_as_it_comes_to_rest(window, loose, tmp_path):
     export = replace(loose.document.export, format="picture", framing="canvas")
     editing.edit_document(window.session, scene_commands.set_export(export))
     exporting.start_export(window.session, out)
-    assert window.session.export is None
-    window.until(lambda: out.exists() and window.session.export is None)
+    assert window.session.export.run is None
+    window.until(lambda: out.exists() and window.session.export.run is None)
     assert not loose.pulls
     check_at_rest(loose.document, goal)
     # Once more, of the pose at rest.
     again = tmp_path / "again.png"
     exporting.start_export(window.session, again)
-    window.until(lambda: again.exists() and window.session.export is None)
+    window.until(lambda: again.exists() and window.session.export.run is None)
     np.testing.assert_array_equal(np.asarray(Image.open(out)), np.asarray(Image.open(again)))
 
 
@@ -182,7 +182,7 @@ def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, lo
     editing.edit_document(session, scene_commands.set_export(export))
     # The one before, which has its file, is no part of it.
     exporting.start_export(session, tmp_path / "before.png")
-    window.until(lambda: (tmp_path / "before.png").exists() and session.export is None)
+    window.until(lambda: (tmp_path / "before.png").exists() and session.export.run is None)
     goal = drag_bar(window, loose)
     exporting.start_export(session, tmp_path / "a.png")
     assert loose.deferred
@@ -210,7 +210,7 @@ def test_copying_the_picture_leaves_an_export_alone_that_is_prepared(
         window.frames()
         exporting.copy_picture(window.session)
         assert window.session.notices.toasts[-1].text == exporting.UNDER_WAY
-    window.until(lambda: (tmp_path / "a.gif").exists() and window.session.export is None)
+    window.until(lambda: (tmp_path / "a.gif").exists() and window.session.export.run is None)
 
 
 def question(window):
@@ -292,7 +292,7 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, loose, tmp_path):
     path = tmp_path / "a.lissom"
     saving.write_project(window.session, path, None)
     window.settle()
-    window.session.preferences = replace(window.session.preferences, auto_key=False)
+    window.session.settings.prefer(auto_key=False)
     playback.scrub(window.session, 7)
     window.settle()
     set_targets(window.session, {1: Target(position=700 + 30j)})
@@ -425,14 +425,14 @@ def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(wind
 
 
 def test_a_save_that_waits_is_not_taken_back(window, loose, tmp_path):
-    loose.path = tmp_path / "bent.lissom"
+    loose.file.path = tmp_path / "bent.lissom"
     with window.session.jobs.held(POSING):
         drag_bar(window, loose)
         saving.save(window.session)
         editing.undo(window.session)
         assert [each.what for each in loose.deferred] == ["Save"]
     window.settle()
-    assert loose.path.exists()
+    assert loose.file.path.exists()
 
 
 def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(window, loose):

@@ -7,6 +7,7 @@ from app.document import track_commands
 from app.document.channels.tracks import Track, TrackKey
 from app.editor import Session
 from app.editor.actions import editing, playback
+from app.editor.parts.settings import SessionSettings
 from app.editor.work.jobs import Jobs
 from app.motion import StreamedVertices
 from app.motion.extents.extent import extent_key
@@ -29,7 +30,9 @@ def prepared(project):
 
 
 def test_session_prepares_ahead_by_itself(tmp_path):
-    assert Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path).prepares_ahead
+    assert Session(
+        clock=lambda: 0.0, jobs=Jobs(), settings=SessionSettings(folder=tmp_path)
+    ).settings.prepares_ahead
 
 
 @pytest.mark.usefixtures("everything")

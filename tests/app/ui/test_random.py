@@ -931,7 +931,7 @@ def small_window(window, monkeypatch):
     for constant in CHEAP:
         monkeypatch.setattr(*constant)
     window.resize(SMALL)
-    window.session.meshing = Meshing(triangles=1_000, detail="coarse")
+    window.session.settings.default_meshing = Meshing(triangles=1_000, detail="coarse")
     yield window
     window.resize(USUAL)
 

@@ -51,7 +51,9 @@ def broken(window, bar, monkeypatch):
     def fail(*_):
         raise ZeroDivisionError(f"a bug with {SECRET}")
 
-    window.session.preferences = type(window.session.preferences)(recent=(SECRET,))
+    window.session.settings.preferences = type(window.session.settings.preferences)(
+        recent=(SECRET,)
+    )
     with monkeypatch.context() as patch:
         patch.setattr(timeline, "draw_transport_bar", fail)
         window.frames(2)
@@ -86,7 +88,7 @@ def test_a_bug_offers_a_report_that_is_shown_changed_and_saved(window, tmp_path,
 def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(window, bar):
     session = window.session
     write_report(window.folder, "It was this.")
-    Autosave(window.folder).write(bar.document, bar.origin)
+    Autosave(window.folder).write(bar.document, bar.file.origin)
     for lock in window.folder.glob("unsaved-*.lock"):
         lock.unlink()
     session.project = None

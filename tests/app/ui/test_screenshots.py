@@ -31,7 +31,7 @@ def dragon(window, wanted):
     """The dragon with three keys that nod its head and sweep its tail."""
     session = window.session
     if wanted:
-        session.meshing = Meshing(triangles=4_000)
+        session.settings.default_meshing = Meshing(triangles=4_000)
     project = window.open(sample_images() / "dragon.png")
     size = complex(*project.document.canvas)
 
@@ -52,7 +52,7 @@ def dragon(window, wanted):
         )
         window.settle()
     editing.select_keys(session, frozenset({16}))
-    session.prepares_ahead = True
+    session.settings.prepares_ahead = True
     window.settle()
     return project
 
@@ -69,7 +69,7 @@ def save(window, wanted, tmp_path):
         for size, (pixels, scale) in reversed(sizes.items()):
             window.resize(pixels, scale)
             for theme in themes:
-                if window.session.preferences.theme != theme:
+                if window.session.settings.preferences.theme != theme:
                     viewing.toggle_theme(window.session)
                 window.settle()
                 window.frames(10)
@@ -141,7 +141,7 @@ def test_screenshots_of_the_main_states(window, dragon, save):
     viewing.show_heat_map(session, "none")
     window.show_tab("Export")
     export = save("export")
-    low, high = session.export_frame
+    low, high = session.export.frame_box
     for share in (0.2, 0.5, 0.8):
         for edge in (
             complex(low.real + share * (high - low).real, low.imag),

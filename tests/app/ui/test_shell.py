@@ -60,7 +60,7 @@ def test_scale_takes_docked_panels_along(window):
     tabs, timeline = _docked("Handle").size.x, _docked("Timeline").size.y
     viewing.enlarge_interface(window.session)
     window.frames(3)
-    scale = window.session.preferences.scale
+    scale = window.session.settings.preferences.scale
     assert _docked("Timeline").size.y == pytest.approx(scale * timeline, abs=1)
     assert _docked("Handle").size.x == pytest.approx(scale * tabs, abs=1)
     viewing.shrink_interface(window.session)

@@ -409,11 +409,11 @@ def test_what_single_formats_ask_is_entered(window, project, tab):
 @pytest.mark.usefixtures("everything")
 def test_frame_of_the_export_shows_only_with_its_tab(window, project, tab):
     tab("Export", lambda _: None)
-    assert window.session.export_frame is not None
+    assert window.session.export.frame_box is not None
     window.settle()
     assert project.extent.follows(extent_key(project.document))
     tab("Handle", lambda _: None)
-    assert window.session.export_frame is None
+    assert window.session.export.frame_box is None
 
 
 def note_of_the_frame(window, project):
@@ -470,10 +470,10 @@ def test_export_starts_repeats_and_reports(window, project, tab, tmp_path):
     tab("Export", choose)
     window.run(lambda robot: robot.item_click("//###dialog/Choose"))
     window.frames(2)
-    assert project.export_destinations == {"png": tmp_path / "frames"}
+    assert project.exports.by_format == {"png": tmp_path / "frames"}
     assert not (tmp_path / "frames").exists()
     tab("Export", lambda robot: robot.item_click("**/###start"))
-    window.until(lambda: session.export is None)
+    window.until(lambda: session.export.run is None)
     names = sorted(path.name for path in (tmp_path / "frames").iterdir())
     assert names == [f"frame_{number:04d}.png" for number in range(3)]
     toast = next(toast for toast in session.notices.toasts if toast.tone == "good")
@@ -482,9 +482,9 @@ def test_export_starts_repeats_and_reports(window, project, tab, tmp_path):
 
 
 def test_error_appears_when_an_export_cannot_begin(window, project, tab, tmp_path):
-    project.export_destinations["png"] = tmp_path / "missing" / "frames"
+    project.exports.by_format["png"] = tmp_path / "missing" / "frames"
     tab("Export", lambda robot: robot.item_click("**/###start"))
-    assert window.session.export is None
+    assert window.session.export.run is None
     assert any(
         NO_FOLDER.format(folder=tmp_path / "missing") in toast.text
         for toast in window.session.notices.toasts

@@ -638,7 +638,7 @@ def test_target_error_of_a_track_appears_in_pixels(window, bent):
     shown = bent.layer_runtime.shown
     target = shown.correction.targets[RIGHT]
     assert abs(abs(shown.handle_positions[RIGHT] - target) - misses[10]) < 1
-    palette = PALETTES[window.session.preferences.theme]
+    palette = PALETTES[window.session.settings.preferences.theme]
     ends = [line.points[0] for line in mark_all(window.session, bent, shown, palette)[0]]
     assert target in ends
     # Switched off, it misses nothing.
@@ -686,7 +686,9 @@ def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):
 
     def lines():
         shown = bent.layer_runtime.shown
-        return mark_all(window.session, bent, shown, PALETTES[window.session.preferences.theme])[0]
+        return mark_all(
+            window.session, bent, shown, PALETTES[window.session.settings.preferences.theme]
+        )[0]
 
     marked = lines()
     window.act(editing.select_handles, frozenset({LEFT}))

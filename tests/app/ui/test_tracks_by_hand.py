@@ -264,7 +264,7 @@ def offset_by(window, project, offset, frames):
 @pytest.mark.parametrize("auto_key", [True, False])
 @pytest.mark.usefixtures("everything")
 def test_a_pose_has_what_a_track_adds_on_it_and_not_in_it(window, brief, auto_key):
-    window.session.preferences = replace(window.session.preferences, auto_key=auto_key)
+    window.session.settings.prefer(auto_key=auto_key)
     offset_by(window, brief, 30j, (EARLIER, HALF, LATER))
     playback.scrub(window.session, HALF)
     window.settle()

@@ -28,8 +28,8 @@ def open_walker(window, folder):
     save_project(path, walker())
     project = window.open(path)
     # No test is to have it from another one's hands.
-    project.file_lock.release()
-    project.file_lock = project.path = None
+    project.file.lock.release()
+    project.file.lock = project.file.path = None
     choose(window, "near leg")
     for handle, way in ((1, 18 + 8j), (2, -20 + 30j)):
         editing.select_handles(window.session, frozenset({handle}))

@@ -97,17 +97,17 @@ def test_an_export_that_cannot_begin_says_why(window, tmp_path):
     out.write_bytes(b"")
     window.act(exporting.start_export, out)
     window.settle()
-    assert window.session.export is None
+    assert window.session.export.run is None
     assert any("it is a file" in text for text in texts(window))
 
 
 def crash(window, project):
     """End without a farewell while there is unsaved work, and start again; what it goes by."""
     window.clock.now += SECONDS
-    project.autosaved = None
+    project.file.autosaved = None
     autosaving.autosave(window.session)
     window.settle()
-    window.session.autosave = Autosave(window.folder)
+    window.session.settings.autosave = Autosave(window.folder)
     for lock in window.folder.glob("unsaved-*.lock"):
         lock.unlink()
     window.session.project = None
@@ -119,7 +119,7 @@ def crash(window, project):
 
 def test_unsaved_work_comes_back_after_a_crash(window, project):
     crashed = Autosave(window.folder)
-    crashed.write(project.document, project.origin)
+    crashed.write(project.document, project.file.origin)
     (orphan,) = window.folder.glob("unsaved-*.lissom")
     assert find_recoverable_files(window.folder) == []
     orphan.with_suffix(".lock").unlink()
@@ -154,12 +154,12 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     window.settle()
     recovered = window.session.project
     assert window_title(window.session) == "posed.lissom* – Lissom"
-    assert (recovered.name, recovered.path) == ("posed", path)
+    assert (recovered.file.name, recovered.file.path) == ("posed", path)
     assert len(recovered.layer.handles) == 1
     assert any("posed.lissom" in text for text in texts(window))
     assert path.read_bytes() == saved
     # A second crash finds it again.
-    assert crash(window, recovered) == (recovered.name, path)
+    assert crash(window, recovered) == (recovered.file.name, path)
     window.run(lambda robot: robot.item_click("//###dialog/**/Open"))
     window.settle()
 
@@ -192,7 +192,7 @@ def test_recovered_work_on_a_picture_has_its_name_and_no_file(window, project):
     window.run(lambda robot: robot.item_click("//###dialog/**/Open"))
     window.settle()
     assert window_title(window.session) == "bar* – Lissom"
-    assert window.session.project.path is None
+    assert window.session.project.file.path is None
 
 
 @pytest.fixture
@@ -229,13 +229,13 @@ def test_a_file_that_another_window_has_open_is_opened_only_after_a_question(win
     files.open_file(window.session, saved)
     window.settle()
     answer(window, "Open a copy")
-    assert window.session.project.path is None
-    assert window.session.project.name == "a"
+    assert window.session.project.file.path is None
+    assert window.session.project.file.name == "a"
 
     files.open_file(window.session, saved)
     window.settle()
     answer(window, "Open anyway")
-    assert window.session.project.path == saved
+    assert window.session.project.file.path == saved
     other.release()
 
 
@@ -265,7 +265,7 @@ def test_file_opens_with_a_notice_when_it_cannot_be_locked(window, saved, monkey
     monkeypatch.setattr("app.storage.files.file_lock.lock", no_locks)
     files.open_file(window.session, saved)
     window.settle()
-    assert window.session.project.path == saved
+    assert window.session.project.file.path == saved
     assert any("No locks available" in text for text in texts(window))
 
 
@@ -336,10 +336,10 @@ def test_unsaved_work_that_could_not_be_kept_is_kept_as_soon_as_there_is_room(
 
     window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
-    window.session.autosave.remove()
+    window.session.settings.autosave.remove()
     with monkeypatch.context() as patch:
         patch.setattr("app.storage.files.atomic.os.fsync", full)
-        project.autosaved = None
+        project.file.autosaved = None
         window.clock.now += SECONDS
         window.settle()
         assert any("Unsaved work cannot be autosaved" in text for text in texts(window))
@@ -359,8 +359,8 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     middle = complex(*project.document.canvas) / 2
     window.act(add_handle, middle)
     window.settle()
-    window.session.autosave.remove()
-    project.autosaved = None
+    window.session.settings.autosave.remove()
+    project.file.autosaved = None
     busy = Job(kind=JobKind("Busy", lane="keep"), work=end.wait, done=lambda _: None, failed=print)
     window.session.jobs.put(busy)
     window.clock.now += SECONDS
@@ -414,7 +414,7 @@ def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
     window.frames(3)
     # What is kept does not wait for it.
     saving.write_project(window.session, tmp_path / "a.lissom", None)
-    window.until(lambda: project.path is not None)
+    window.until(lambda: project.file.path is not None)
     assert (tmp_path / "a.lissom").exists()
     window.until(lambda: autosaving.WRITING not in window.session.jobs.kinds)
     window.clock.now += ENDLESS
@@ -440,7 +440,7 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
     window.frames(3)
     assert not (tmp_path / "a.lissom").exists()
     window.clock.now += saving.PATIENCE
-    window.until(lambda: project.path is not None)
+    window.until(lambda: project.file.path is not None)
     assert (tmp_path / "a.lissom").exists()
     window.act(frame_update.give_up, POSING)
     end.set()
@@ -452,8 +452,8 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
 def test_failing_graphics_driver_is_reported(window, project, monkeypatch, has_room):
     window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
-    window.session.autosave.remove()
-    project.autosaved = None
+    window.session.settings.autosave.remove()
+    project.file.autosaved = None
 
     def lost(*_, **__):
         raise RuntimeError("the context was lost")

@@ -485,7 +485,7 @@ FAILURES = {
     ),
     "Saving": (
         "app.editor.actions.project_files.saving.save_project",
-        lambda session: saving.write_project(session, session.folder / "bar.lissom", None),
+        lambda session: saving.write_project(session, session.settings.folder / "bar.lissom", None),
     ),
     "Opening": (
         "app.editor.actions.project_files.files.open_picture",
@@ -603,7 +603,7 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
         window.frames(3)
     window.settle()
     other = window.session.project
-    assert other.name == "s"
+    assert other.file.name == "s"
     assert len(other.document.layers[0].keys) == 1
     assert other.history.undo_label is None
     assert other.extent.source in (None, extent_key(other.document))

@@ -61,11 +61,11 @@ def begin(window, out, count=3):
     """Start an export, and wait until some of its frames are drawn."""
     session = window.session
     window.act(exporting.start_export, out)
-    window.until(lambda: session.export is not None and session.export.done >= count)
+    window.until(lambda: session.export.run is not None and session.export.run.done >= count)
 
 
 def finish(window):
-    window.until(lambda: window.session.export is None)
+    window.until(lambda: window.session.export.run is None)
     window.settle()
 
 
@@ -96,12 +96,12 @@ def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
     for _ in range(MOST_FRAMES):
         awake.clear()
         window.frames()
-        if session.export is None:
+        if session.export.run is None:
             break
         if steps:
             assert set(session.jobs.kinds) <= {autosaving.WRITING}
             assert awake
-        steps.append(session.export.done)
+        steps.append(session.export.run.done)
     assert steps[-1] == FRAMES
     assert max(np.diff([0, *steps])) <= 2  # of them use the share up
     session.notices.toasts = []
@@ -131,7 +131,7 @@ def test_frames_that_are_there_are_replaced_only_after_a_question(window, tmp_pa
     (out / "frame_0005.png").write_bytes(b"precious")
     window.act(exporting.start_export, out)
     window.settle()
-    assert window.session.export is None
+    assert window.session.export.run is None
     assert question(window).title == "Replace the 2 files?"
     assert "frame_0003.png … frame_0005.png" in question(window).text
     answer(window, "Cancel")
@@ -161,7 +161,7 @@ def test_another_format_asks_before_it_replaces_a_file(window, project, tmp_path
     assert question(window).title == REPLACE
     answer(window, "Cancel")
     assert (tmp_path / "bar.webp").read_bytes() == b"precious"
-    assert project.export_destinations == {"gif": tmp_path / "bar.gif"}
+    assert project.exports.by_format == {"gif": tmp_path / "bar.gif"}
 
 
 def test_dots_in_the_name_of_a_folder_are_no_endings(window, project, tmp_path):
@@ -170,7 +170,7 @@ def test_dots_in_the_name_of_a_folder_are_no_endings(window, project, tmp_path):
     window.settle()
     finish(window)
     assert [path.name for path in tmp_path.iterdir()] == ["shot.010"]
-    assert project.export_destinations == {"png": tmp_path / "shot.010"}
+    assert project.exports.by_format == {"png": tmp_path / "shot.010"}
 
 
 def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, tmp_path):
@@ -179,7 +179,7 @@ def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, t
     window.until(lambda: any(out.glob("frame_*.png")))
     window.act(exporting.cancel_export)
     window.settle()
-    assert window.session.export is None
+    assert window.session.export.run is None
     written = sorted(out.iterdir())
     assert [path.name for path in written] == [f"frame_{i:04d}.png" for i in range(len(written))]
     assert 0 < len(written) < FRAMES
@@ -218,8 +218,8 @@ def test_export_is_cancelled_while_it_is_prepared(window, project, tmp_path):
     exporting.start_export(window.session, tmp_path / "frames")
     exporting.cancel_export(window.session)
     window.settle()
-    assert window.session.export is None
-    assert not project.export_destinations
+    assert window.session.export.run is None
+    assert not project.exports.by_format
     assert list(tmp_path.iterdir()) == []
 
 
@@ -285,12 +285,12 @@ def test_cancel_is_answered_at_once_while_it_is_prepared(window, tmp_path, held,
     worker = held(*where[stage])
     window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
-    assert (session.export is None) == (stage == "sites")
-    left = weakref.ref(session.export.poses[0]) if session.export else None
+    assert (session.export.run is None) == (stage == "sites")
+    left = weakref.ref(session.export.run.poses[0]) if session.export.run else None
     window.act(exporting.cancel_export)
     window.frames()
     assert not worker.has_waited_in_vain
-    assert session.export is None
+    assert session.export.run is None
     assert exporting.PREPARING not in session.jobs.kinds
     # Nothing is half there.
     written = [path for path in tmp_path.rglob("*") if path.is_file()]
@@ -341,13 +341,13 @@ def test_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, hel
     window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
     window.frames(20)  # what can be drawn until then, is
-    run = session.export
+    run = session.export.run
     assert run is not None
     assert at <= run.done <= FRAMES
     window.act(exporting.cancel_export)
     window.frames()
     assert not worker.has_waited_in_vain
-    assert session.export is None
+    assert session.export.run is None
     worker.end.set()
     window.until(lambda: not export_threads())
     written = sorted(path for path in tmp_path.rglob("*") if path.is_file())
@@ -385,7 +385,7 @@ def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
     window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
     window.act(exporting.cancel_export)
-    assert session.export is not None
+    assert session.export.run is not None
     worker.end.set()
     finish(window)
     assert not any("cancelled" in text for text in texts(window))
@@ -429,7 +429,7 @@ def test_quitting_asks_about_an_export_that_runs(window, tmp_path, held):
     assert not session.is_quitting
     assert question(window).title == exporting.RUNNING
     answer(window, "Cancel")
-    assert session.export is not None
+    assert session.export.run is not None
     window.act(saving.request_quit)
     answer(window, "Quit")
     assert session.is_quitting
@@ -480,7 +480,7 @@ def test_frame_that_cannot_be_drawn_ends_the_export(window, tmp_path, monkeypatc
     (toast,) = (toast for toast in window.session.notices.toasts if toast.details)
     assert "a bug" in toast.details
     window.session.notices.toasts = []
-    assert window.session.export is None
+    assert window.session.export.run is None
     assert list((tmp_path / "frames").iterdir()) == []
     window.act(export_settings.repeat_export)
     window.settle()
@@ -497,11 +497,11 @@ def test_export_goes_on_when_another_project_is_opened(window, tmp_path):
     files.open_file(window.session, sample_images() / "s.png")
     window.settle()
     other = window.session.project
-    assert other.name == "s"
+    assert other.file.name == "s"
     finish(window)
     assert len(list(out.iterdir())) == FRAMES
     assert all(map(is_whole, out.iterdir()))
-    assert not other.export_destinations
+    assert not other.exports.by_format
     assert other.document.export == ExportSettings()
     assert any("Exported 9 frames" in text for text in texts(window))
 
@@ -619,8 +619,8 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
     assert "The picture is on the clipboard." in texts(window)
     with Image.open(clipboard) as image:
         assert np.array_equal(np.asarray(image), pixels)
-    assert [path for path in session.folder.iterdir() if path.suffix == ".png"] == []
-    assert project.export_destinations["picture"] == out
+    assert [path for path in session.settings.folder.iterdir() if path.suffix == ".png"] == []
+    assert project.exports.by_format["picture"] == out
 
 
 @pytest.mark.usefixtures("project")
@@ -628,7 +628,7 @@ def test_missing_clipboard_program_is_reported(window, monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr("sys.platform", "linux")
     window.act(exporting.copy_picture)
-    assert window.session.export is None
+    assert window.session.export.run is None
     assert any("sudo apt install xclip" in text for text in texts(window)), texts(window)
 
 
@@ -648,7 +648,7 @@ def test_nothing_is_written_over_what_the_project_was_made_from(window, tmp_path
         session.notices.toasts = []
         window.act(action, *arguments)
         window.settle()
-        assert session.export is None
+        assert session.export.run is None
         texts = [toast.text + toast.details for toast in session.notices.toasts]
         assert any(re.search(says(SAME_FILE), text, re.IGNORECASE) for text in texts), texts
         assert {path: path.read_bytes() for path in before} == before
@@ -661,4 +661,4 @@ def test_nothing_is_written_over_what_the_project_was_made_from(window, tmp_path
     refused(cut_out_editing.save_mask, saved)
     export_settings.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
     refused(export_settings.start_export_at, tmp_path / "walk.png")
-    assert project.path == saved
+    assert project.file.path == saved

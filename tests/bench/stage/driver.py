@@ -12,6 +12,7 @@ from imgui_bundle import ImVec2
 from app.document import Target
 from app.editor import Jobs, Project, Session, do
 from app.editor.actions import playback
+from app.editor.parts.settings import SessionSettings
 from app.render import Renderer
 from app.render.gpu.context import create_context
 from app.ui.window.window import PAUSE, SIZE, Window
@@ -59,7 +60,9 @@ class Driver:
         self._ahead = 0.0
         self._woken = threading.Event()
         self.session = Session(
-            clock=lambda: time.perf_counter() + self._ahead, jobs=Jobs(), folder=folder
+            clock=lambda: time.perf_counter() + self._ahead,
+            jobs=Jobs(),
+            settings=SessionSettings(folder=folder),
         )
         self.session.jobs.wake = self._woken.set
         self._gl = create_context()

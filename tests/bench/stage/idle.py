@@ -12,6 +12,7 @@ from pathlib import Path
 
 from app.editor import Jobs, Session, do
 from app.editor.actions.project_files import files
+from app.editor.parts.settings import SessionSettings
 from app.render import Renderer
 from app.render.gpu.context import window_context
 from app.storage import sample_images
@@ -62,7 +63,9 @@ def main() -> None:
     """Open the window on the screen, with the file that the command line names."""
     seconds, paths = float(sys.argv[1]), sys.argv[2:]
     with tempfile.TemporaryDirectory() as name:
-        session = Session(clock=time.perf_counter, jobs=Jobs(), folder=Path(name))
+        session = Session(
+            clock=time.perf_counter, jobs=Jobs(), settings=SessionSettings(folder=Path(name))
+        )
         window = Window(session, lambda: Renderer(window_context()))
         for path in paths:
             window.queue_action(do(files.open_file, Path(path)))

@@ -9,6 +9,7 @@ from pathlib import Path
 from app.editor import Jobs, Session, do
 from app.editor.actions import tutorials
 from app.editor.actions.project_files import recovery, saving
+from app.editor.parts.settings import SessionSettings
 from app.render import Renderer
 from app.render.gpu.context import create_context, window_context
 from app.storage import load_preferences
@@ -68,8 +69,7 @@ def main() -> None:
         session = Session(
             clock=time.perf_counter,
             jobs=Jobs(),
-            folder=folder,
-            preferences=load_preferences(folder),
+            settings=SessionSettings(folder=folder, preferences=load_preferences(folder)),
         )
         recovery.ask_recovery(session)
         if has_display():

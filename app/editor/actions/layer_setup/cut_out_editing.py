@@ -185,7 +185,7 @@ def load_mask(session: Session, project: Project, path: Path) -> None:
 
 @with_project
 def ask_mask_to_save(session: Session, project: Project) -> None:
-    name = _("{project} mask").format(project=project.name) + MASKS[0]
+    name = _("{project} mask").format(project=project.file.name) + MASKS[0]
     session.ask_file(_("Save the mask"), MASKS, lambda path: do(save_mask, path), name=name)
 
 
@@ -193,7 +193,7 @@ def ask_mask_to_save(session: Session, project: Project) -> None:
 def save_mask(session: Session, project: Project, path: Path) -> None:
     """Save the kept area as a black and white picture."""
     picture, cut_out = project.layer_runtime.picture, project.layer.cut_out
-    check_writable(path, sources=project.sources)
+    check_writable(path, sources=project.file.sources)
 
     def work() -> None:
         content = encode_mask(Mask.of(cut_picture(picture, cut_out).kept))

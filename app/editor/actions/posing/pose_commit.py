@@ -113,4 +113,4 @@ def key_pose_command(session: Session, project: Project, unkeyed: PreviewPose) -
     layer, frame, pose = unkeyed.layer, unkeyed.frame, unkeyed.pose
     if frame in project.document.layer(layer).key_frames:
         return key_commands.replace_key_pose(layer, frame, pose)
-    return key_commands.insert_key(layer, frame, pose, easing=session.preferences.easing)
+    return key_commands.insert_key(layer, frame, pose, easing=session.settings.preferences.easing)

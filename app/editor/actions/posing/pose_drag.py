@@ -200,7 +200,7 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
         gesture=gesture,
         start=start,
         before=before,
-        is_keyed=session.preferences.auto_key,
+        is_keyed=session.settings.preferences.auto_key,
         rests=earlier is None or earlier.is_settled,
     )
     project.pending.append(begun)

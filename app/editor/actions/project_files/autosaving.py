@@ -29,7 +29,7 @@ def write_due_files(session: Session) -> None:
 
 def remove_temporary_files(session: Session) -> None:
     """Remove temporary files of interrupted saves from the person's folders; at the start."""
-    folders = {session.folder, *session.preferences.written}
+    folders = {session.settings.folder, *session.settings.preferences.written}
 
     def work() -> None:
         for folder in folders:
@@ -41,10 +41,10 @@ def remove_temporary_files(session: Session) -> None:
 
 def write_preferences(session: Session) -> None:
     """Write the preferences if they have changed."""
-    preferences, folder = session.preferences, session.folder
-    if preferences == session.saved_preferences:
+    preferences, folder = session.settings.preferences, session.settings.folder
+    if preferences == session.settings.saved_preferences:
         return
-    session.saved_preferences = preferences
+    session.settings.note_saved()
     run_job(
         session,
         WRITING,
@@ -57,21 +57,21 @@ def write_preferences(session: Session) -> None:
 @with_project
 def autosave(session: Session, project: Project) -> None:
     """Write unsaved changes to the autosave at intervals."""
+    file = project.file
     if not has_unsaved_changes(project):
-        if project.autosaved is not None:
-            project.autosaved = None
-            session.autosave.remove()
-        project.changed_at = None
+        if file.autosaved is not None:
+            file.revert_autosave(None)
+            session.settings.autosave.remove()
+        file.note_unchanged()
         return
-    if project.autosaved == (project.document, project.history.preview_pose):
-        project.changed_at = None
+    if file.autosaved == (project.document, project.history.preview_pose):
+        file.note_unchanged()
         return
     now = session.clock()
-    if project.changed_at is None:
-        project.changed_at = now
+    since = file.note_change(now)
     # An autosave would disturb a drag, so it waits for the end of the drag. A very long drag must
     # not delay it for ever.
-    may_write = pending_changes.is_document_idle(project) or now - project.changed_at >= SECONDS
+    may_write = pending_changes.is_document_idle(project) or now - since >= SECONDS
     if is_autosave_due(session) and may_write and AUTOSAVING not in session.jobs.kinds:
         _begin_autosave(session, project, now)
 
@@ -79,9 +79,9 @@ def autosave(session: Session, project: Project) -> None:
 def is_autosave_due(session: Session) -> bool:
     """Return whether there are changes, and the last autosave is some time ago."""
     project = session.project
-    if project is None or project.changed_at is None:
+    if project is None or project.file.changed_at is None:
         return False
-    return session.clock() - project.autosaved_at >= SECONDS
+    return session.clock() - project.file.autosaved_at >= SECONDS
 
 
 @with_project
@@ -95,13 +95,13 @@ def autosave_now(session: Session, project: Project) -> None:
     """
     commit_all_poses(session, project)
     kept = project.document, project.history.preview_pose
-    is_kept = project.autosaved == kept and AUTOSAVING not in session.jobs.kinds
+    is_kept = project.file.autosaved == kept and AUTOSAVING not in session.jobs.kinds
     if is_kept or not has_unsaved_changes(project):
         return
     # An autosave that waits is older, and must not replace this one.
     session.jobs.drop(AUTOSAVING)
-    session.autosave.write(_all_keyed(session, project), project.origin)
-    project.autosaved, project.autosaved_at = kept, session.clock()
+    session.settings.autosave.write(_all_keyed(session, project), project.file.origin)
+    project.file.note_autosave(kept, session.clock())
 
 
 def _all_keyed(session: Session, project: Project) -> Document:
@@ -113,21 +113,25 @@ def _all_keyed(session: Session, project: Project) -> Document:
 
 
 def _begin_autosave(session: Session, project: Project, now: float) -> None:
-    document, origin, earlier = _all_keyed(session, project), project.origin, project.autosaved
+    document, origin, earlier = (
+        _all_keyed(session, project),
+        project.file.origin,
+        project.file.autosaved,
+    )
     kept = project.document, project.history.preview_pose
-    project.autosaved, project.autosaved_at = kept, now
+    project.file.note_autosave(kept, now)
 
     def done(_: None) -> None:
         session.diagnostics.note_success(AUTOSAVING.complaint)
         # The project may have been saved or closed meanwhile.
-        if session.project is not project or project.autosaved != kept:
-            session.autosave.remove()
+        if session.project is not project or project.file.autosaved != kept:
+            session.settings.autosave.remove()
 
     def failed(error: Exception) -> None:
         # The disk may have room again next time.
-        if project.autosaved == kept:
-            project.autosaved = earlier
+        if project.file.autosaved == kept:
+            project.file.revert_autosave(earlier)
         report_first_failure(session, AUTOSAVING.complaint, error)
 
-    work = partial(session.autosave.write, document, origin)
+    work = partial(session.settings.autosave.write, document, origin)
     run_job(session, AUTOSAVING, work, done, failed)

@@ -6,7 +6,7 @@ from pathlib import Path
 from app.document import ExportSettings, scene_commands
 from app.editor.action import Action, do
 from app.editor.actions import editing
-from app.editor.actions.project_files.exporting import note_export_destination, start_export
+from app.editor.actions.project_files.exporting import start_export
 from app.editor.parts.dialogs import FileDialog
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -30,11 +30,11 @@ def ask_export_destination(session: Session) -> None:
 def set_export_destination(_: Session, project: Project, out: Path) -> None:
     """Set the destination of the next export of this format."""
     name = project.document.export.format
-    note_export_destination(project, name, out)
+    project.exports.choose(name, out)
     data = data_file(out, name)
     if EXPORT_FORMATS[name].suffixes and not (data is not None and data.exists()):
         # The file dialog has already asked whether to replace the file.
-        project.replaceable = name, out
+        project.exports.allow_replacing(name, out)
 
 
 def start_export_at(session: Session, out: Path) -> None:
@@ -58,7 +58,7 @@ def export_destination(project: Project) -> Path | None:
     This is the last destination of the format. The first export of a format goes beside the last
     export of another format, under a suitable name.
     """
-    name, places = project.document.export.format, project.export_destinations
+    name, places = project.document.export.format, project.exports.by_format
     newest = next(reversed(places.values()), None)
     return places.get(name) or (with_suffix_for(newest, name) if newest else None)
 
@@ -69,23 +69,26 @@ def set_export_settings(session: Session, export: ExportSettings) -> None:
 
 def set_aspect_locked(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the only argument
     """Link or unlink width and height of an export."""
-    session.is_aspect_locked = keeps
+    session.export.lock_aspect(locked=keeps)
 
 
 def preview_export_frame(session: Session, box: BoundingBox) -> None:
     """Show the export's frame in the viewport, until the next frame of the window."""
-    session.export_frame = box
+    session.export.show_frame_box(box)
 
 
 @with_project
 def _ask(session: Session, project: Project, verb: str, chosen: Callable[[Path], Action]) -> None:
-    if session.export is not None:
+    if session.export.run is not None:
         return
     settings = project.document.export
     suffixes = EXPORT_FORMATS[settings.format].suffixes
     out = export_destination(project)
     if out is None:
-        out = session.usual_folder / f"{project.name}{suffixes[0] if suffixes else FRAMES}"
+        out = (
+            session.settings.usual_folder
+            / f"{project.file.name}{suffixes[0] if suffixes else FRAMES}"
+        )
     session.dialogs.show(
         FileDialog(
             title=_("Export to file") if suffixes else _("Export to folder"),
@@ -95,6 +98,6 @@ def _ask(session: Session, project: Project, verb: str, chosen: Callable[[Path],
             writes=True,
             verb=verb,
             chosen=chosen,
-            is_frame=FrameNames(pattern=settings.names, project=project.name).fits,
+            is_frame=FrameNames(pattern=settings.names, project=project.file.name).fits,
         )
     )

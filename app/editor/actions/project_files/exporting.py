@@ -12,8 +12,9 @@ from app.editor import pending_changes
 from app.editor.action import Action, do
 from app.editor.actions.posing.pose_commit import key_pose_command
 from app.editor.error_reports import as_sentence, report_failure, run_job
+from app.editor.parts.export_state import ExportRun
 from app.editor.project import Project
-from app.editor.session import ExportRun, Session, with_project
+from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.editor.work.pending_change import DeferredAction
 from app.errors import LissomError, display_name
@@ -29,7 +30,7 @@ from app.export import (
 )
 from app.export_formats import EXPORT_FORMATS, STILL_FORMAT
 from app.motion import Animation, PoseSampler, extent_key, placed_animations
-from app.storage import Cancellation, make_settings_folder, temporary_picture
+from app.storage import make_settings_folder, temporary_picture
 from app.texts import _, ngettext
 
 UNDER_WAY = _("An export is running. Start the next export when it is done.")
@@ -40,15 +41,10 @@ PREPARING = JobKind(_("Preparing the export"), _("The export could not begin"), 
 COPYING = JobKind(_("Copying the picture"), _("The picture was not copied"), "export")
 
 
-def note_export_destination(project: Project, name: str, out: Path) -> None:
-    project.export_destinations.pop(name, None)
-    project.export_destinations[name] = out
-
-
 @with_project
 def replace_export_files(session: Session, project: Project, out: Path) -> None:
     """Export, and replace existing files."""
-    project.replaceable = project.document.export.format, out
+    project.exports.allow_replacing(project.document.export.format, out)
     start_export(session, out)
 
 
@@ -60,7 +56,7 @@ def start_export(session: Session, project: Project, out: Path) -> None:
     settings = project.document.export
     request = _request(session, project, out, settings)
     check_request(project.document, request)
-    is_replaceable = project.replaceable == (settings.format, out)
+    is_replaceable = project.exports.replaceable == (settings.format, out)
     there = [] if is_replaceable else list_overwritten_files(project.document, request)
     if there:
         count, listed = len(there), there[0] if len(there) == 1 else f"{there[0]} … {there[-1]}"
@@ -73,7 +69,7 @@ def start_export(session: Session, project: Project, out: Path) -> None:
             answers=((_("Replace"), do(replace_export_files, out)),),
         )
         return
-    session.cancellation = Cancellation()
+    session.export.begin()
     pending_changes.run_when_idle(session, do(_begin, request), _("Export"), changes=False)
 
 
@@ -83,13 +79,15 @@ def _begin(session: Session, project: Project, request: ExportRequest) -> None:
     out, settings = request.out, request.settings
 
     def begun(run: ExportRun) -> None:
-        session.export = run
-        note_export_destination(project, settings.format, out)
+        session.export.start(run)
+        project.exports.choose(settings.format, out)
         folder = out.parent if EXPORT_FORMATS[settings.format].suffixes else out
-        session.preferences = replace(session.preferences, exported=folder)
+        session.settings.prefer(exported=folder)
         # A new pose makes a new picture, which must not replace this one without a question.
-        is_still = EXPORT_FORMATS[settings.format].is_still
-        project.replaceable = None if is_still else (settings.format, out)
+        if EXPORT_FORMATS[settings.format].is_still:
+            project.exports.forbid_replacing()
+        else:
+            project.exports.allow_replacing(settings.format, out)
 
     _prepare(session, project, request, begun)
 
@@ -100,12 +98,12 @@ def copy_picture(session: Session, project: Project) -> None:
     if not _is_free(session):
         return
     clipboard_program()  # raises an error with the program to install if there is none
-    make_settings_folder(session.folder)
-    out = temporary_picture(session.folder)
+    make_settings_folder(session.settings.folder)
+    out = temporary_picture(session.settings.folder)
     settings = replace(project.document.export, format=STILL_FORMAT)
     request = _request(session, project, out, settings)
     check_request(project.document, request)
-    session.cancellation = Cancellation()
+    session.export.begin()
     pending_changes.run_when_idle(
         session, do(_begin_copy, request), _("Copy the picture"), changes=False
     )
@@ -114,7 +112,7 @@ def copy_picture(session: Session, project: Project) -> None:
 @with_project
 def _begin_copy(session: Session, project: Project, request: ExportRequest) -> None:
     def begun(run: ExportRun) -> None:
-        session.export = replace(run, for_clipboard=True)
+        session.export.start(replace(run, for_clipboard=True))
 
     _prepare(session, project, request, begun)
 
@@ -122,7 +120,7 @@ def _begin_copy(session: Session, project: Project, request: ExportRequest) -> N
 def is_export_under_way(session: Session) -> bool:
     """Return whether an export runs, is prepared, or waits for pending changes."""
     is_waiting = session.project is not None and any(map(_is_export, session.project.deferred))
-    return is_waiting or session.export is not None or PREPARING in session.jobs.kinds
+    return is_waiting or session.export.run is not None or PREPARING in session.jobs.kinds
 
 
 def _is_export(waiting: DeferredAction) -> bool:
@@ -143,7 +141,9 @@ def _request(
     if EXPORT_FORMATS[settings.format].is_still:
         now = project.playhead.frame_at(project.document, session.clock())
         settings = replace(settings, frames=FrameRange(now, now))
-    return ExportRequest(out=out, settings=settings, project=project.name, sources=project.sources)
+    return ExportRequest(
+        out=out, settings=settings, project=project.file.name, sources=project.file.sources
+    )
 
 
 def _prepare(
@@ -166,7 +166,7 @@ def _prepare(
     }
     extent = project.extent
     box = extent.value if extent.follows(extent_key(document)) else None
-    cancellation = session.cancellation
+    cancellation = session.export.cancellation
 
     def work() -> ExportRun:
         detail = request.settings.shapes.triangles
@@ -196,7 +196,7 @@ def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
 
 def cancel_export(session: Session) -> None:
     """Cancel the export unless its file is complete; written frames stay."""
-    run, project = session.export, session.project
+    run, project = session.export.run, session.project
     if not is_export_under_way(session):
         return
     if project is not None:
@@ -204,16 +204,16 @@ def cancel_export(session: Session) -> None:
     # Dropped first, so that no failure is reported; then abandoned, since it may take long.
     session.jobs.drop(PREPARING)
     session.jobs.abandon(PREPARING)
-    is_nothing_written = session.cancellation.cancel()
+    is_nothing_written = session.export.cancellation.cancel()
     if run is not None and _is_one_file(run) and not is_nothing_written:
         return
-    session.export = None
+    session.export.end()
     session.notices.show(CANCELLED_UNWRITTEN if is_nothing_written else CANCELLED_MIDWAY)
 
 
 def confirm_ending_export(session: Session, then: Action) -> None:
     """Run an action that ends an export, but ask first if one is under way."""
-    run = session.export
+    run = session.export.run
     if not is_export_under_way(session):
         then.apply(session)
         return
@@ -239,17 +239,16 @@ def _is_one_file(run: ExportRun) -> bool:
 
 def update_export_progress(session: Session, run: ExportRun, done: int) -> None:
     """Note the number of drawn frames."""
-    if session.export is run:
-        session.export = replace(run, done=done)
+    session.export.note_progress(run, done)
 
 
 def finish_export(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
     """Show a notice that an export is complete, with its warnings."""
-    session.export = None
+    session.export.end()
     if run.for_clipboard:
         _copy(session, run.plan.out)
         return
-    session.exported = run.plan
+    session.export.complete(run.plan)
     folder = run.plan.out if run.plan.out.is_dir() else run.plan.out.parent
     name, count = run.plan.out.name, len(run.plan.times)
     if EXPORT_FORMATS[run.plan.format].is_drawn:
@@ -282,7 +281,7 @@ def _copy(session: Session, picture: Path) -> None:
 
 
 def report_failed_export(session: Session, error: Exception) -> None:
-    session.export = None
+    session.export.end()
     report_failure(session, _("The export failed"), error)
 
 

@@ -13,6 +13,7 @@ from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.project_files import saving
 from app.editor.actions.project_files.saving import PROJECT
 from app.editor.error_reports import as_sentence, run_job
+from app.editor.parts.project_file import ProjectFile
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import JobKind
@@ -51,7 +52,7 @@ LOOK = 2.0  # seconds between two checks whether files still exist
 def recent_files(session: Session) -> tuple[tuple[Path, bool], ...]:
     """Return the recent files, and whether each still exists."""
     # The files may be on a slow disk, and every frame asks for this list.
-    return _found(session.preferences.recent, int(session.clock() / LOOK))
+    return _found(session.settings.preferences.recent, int(session.clock() / LOOK))
 
 
 @lru_cache(maxsize=1)
@@ -64,7 +65,7 @@ def open_recent_file(session: Session, path: Path) -> None:
     if os.path.isfile(path):  # noqa: PTH113 - never raises
         open_file(session, path)
         return
-    session.preferences = session.preferences.without_recent(path)
+    session.settings.remove_recent(path)
     session.notices.show(
         _("{name} is no longer in {folder}. It was removed from the recent files.").format(
             name=path.name, folder=path.parent
@@ -102,7 +103,7 @@ def open_file(session: Session, path: Path, *, as_one_picture: bool = False) -> 
     If the project has unsaved changes by then, a question comes first. The layers of a drawing
     may be merged into one picture.
     """
-    meshing = session.meshing
+    meshing = session.settings.default_meshing
     kind = JobKind(
         display_name(_("Opening {name}").format(name=path.name)),
         _("{name} cannot be opened").format(name=path.name),
@@ -112,7 +113,7 @@ def open_file(session: Session, path: Path, *, as_one_picture: bool = False) -> 
 
 def open_files_as_layers(session: Session, paths: Sequence[Path]) -> None:
     """Read several pictures on the worker, and open them as the layers of one scene."""
-    meshing = session.meshing
+    meshing = session.settings.default_meshing
     text = ngettext("Opening {count} picture", "Opening {count} pictures", len(paths))
     kind = JobKind(text.format(count=len(paths)), _("The pictures cannot be opened"))
 
@@ -191,20 +192,17 @@ def _install(
     session: Session, path: Path, opened: OpenedFile, own: Path | None, hold: FileLock | None = None
 ) -> None:
     """Open a read file in the window; `own` is the project's own file."""
-    session.autosave.remove()
+    session.settings.autosave.remove()
+    name, drawings = display_name(path.stem), set(opened.drawings)
     project = Project(
-        name=display_name(path.stem),
+        file=ProjectFile(name=name, path=own, digest=opened.read_as, drawings=drawings, lock=hold),
         history=History(opened.document, saved=True),
         layer_runtimes=opened.layer_runtimes,
         active=foremost_posable(opened.document),
-        path=own,
-        read_as=opened.read_as,
-        drawings=set(opened.drawings),
-        file_lock=hold,
     )
     saving.set_project(session, project)
     if path.parent != sample_images():
-        session.preferences = session.preferences.with_recent(path)
+        session.settings.add_recent(path)
     elif any(len(layer.keys) > 1 for layer in opened.document.layers):
         playback.toggle_play(session)
     for notice in opened.notices:

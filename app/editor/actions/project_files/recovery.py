@@ -9,6 +9,7 @@ from app.editor.actions.project_files import saving
 from app.editor.actions.project_files.files import OpenedFile, decode_project, foremost_posable
 from app.editor.error_reports import run_job
 from app.editor.parts.dialogs import RecoverableFile, RecoveryDialog
+from app.editor.parts.project_file import ProjectFile
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import JobKind
@@ -39,7 +40,7 @@ def show_recovery(session: Session) -> None:
 def list_recoverable_files(session: Session) -> tuple[RecoverableFile, ...]:
     """Return the unsaved work of closed windows, the newest first."""
     found = []
-    for path in find_recoverable_files(session.folder):
+    for path in find_recoverable_files(session.settings.folder):
         with suppress(OSError):  # another window has just taken it
             status = path.stat()
             found.append(
@@ -75,15 +76,13 @@ def install_recovered(session: Session, path: Path, opened: OpenedFile, origin: 
     saving.set_project(
         session,
         Project(
-            name=origin.name,
+            file=ProjectFile(name=origin.name, path=origin.path, is_recovered=True),
             history=History(opened.document, saved=False),
             layer_runtimes=opened.layer_runtimes,
             active=foremost_posable(opened.document),
-            path=origin.path,
-            is_recovered=True,
         ),
     )
-    session.autosave.write(opened.document, origin)
+    session.settings.autosave.write(opened.document, origin)
     remove_recoverable_file(path)
     text = _("This is your unsaved work. Save the project to keep it.")
     if origin.path:

@@ -12,7 +12,6 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import Job, JobKind
 from app.editor.work.pending_change import PendingChange
-from app.errors import display_name
 from app.storage import (
     FileLock,
     FileLockedError,
@@ -43,10 +42,10 @@ def save_as(session: Session) -> None:
 @with_project
 def save_then(session: Session, project: Project, then: Action | None) -> None:
     """Save the project; after success run an action that closes it, such as quit."""
-    if project.path is None or project.is_recovered:
+    if project.file.path is None or project.file.is_recovered:
         _ask_where(session, then)
     else:
-        write_project(session, project.path, then)
+        write_project(session, project.file.path, then)
 
 
 def write_project(session: Session, path: Path, then: Action | None) -> None:
@@ -66,18 +65,18 @@ def overwrite_changed_file(
     session: Session, project: Project, path: Path, then: Action | None
 ) -> None:
     """Save the project to a file, even if another program has changed the file."""
-    project.read_as = None
+    project.file.forget_digest()
     write_project(session, path, then)
 
 
 @with_project
 def write_project_now(session: Session, project: Project, path: Path, then: Action | None) -> None:
     """Save the project to a file as it is, without waiting for pending changes."""
-    document, known = project.document, project.read_as if path == project.path else None
+    document, known = project.document, project.file.digest if path == project.file.path else None
     textures = {
         layer: runtime.cut.value.texture for layer, runtime in project.layer_runtimes.items()
     }
-    drawings = tuple(project.drawings)
+    drawings = tuple(project.file.drawings)
 
     def work() -> str:
         if known is not None and project_digest(path) not in (None, known):
@@ -89,10 +88,9 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
     def done(digest: str) -> None:
         project.pending.remove(saving)
         project.history.mark_saved(document)
-        project.name, project.path, project.is_recovered = display_name(path.stem), path, False
-        project.read_as = digest
+        project.file.note_saved(path, digest)
         _lock_saved_file(session, project, path)
-        session.preferences = session.preferences.with_recent(path)
+        session.settings.add_recent(path)
         session.notices.show(_("Saved {name}.").format(name=path.name), tone="good")
         if then is not None:
             # The project may have new changes by now.
@@ -132,8 +130,8 @@ def lock_project_file(session: Session, path: Path) -> FileLock | None:
         If the project is open in another window.
     """
     project = session.project
-    if project is not None and project.file_lock is not None and project.file_lock.path == path:
-        return project.file_lock
+    if project is not None and project.file.is_locked_for(path):
+        return project.file.lock
     try:
         return FileLock(path)
     except OSError as error:
@@ -152,26 +150,22 @@ def set_project(session: Session, project: Project | None) -> None:
     before, session.project = session.project, project
     session.active_tool = session.cutting = session.material = None
     session.moves = False
-    hold = before.file_lock if before is not None else None
-    if hold is not None and (project is None or project.file_lock is not hold):
+    hold = before.file.lock if before is not None else None
+    if hold is not None and (project is None or project.file.lock is not hold):
         hold.release()
 
 
 def _lock_saved_file(session: Session, project: Project, path: Path) -> None:
     """Lock the file that a project was saved to, in place of the previous file."""
-    if session.project is not project or (
-        project.file_lock is not None and project.file_lock.path == path
-    ):
+    if session.project is not project or project.file.is_locked_for(path):
         return
-    before = project.file_lock
+    lock = None
     try:
-        project.file_lock = lock_project_file(session, path)
+        lock = lock_project_file(session, path)
     except FileLockedError as error:
-        project.file_lock = None
         text = _("{name} is also open elsewhere: {where}.")
         session.notices.show(text.format(name=path.name, where=message_of(error)), tone="error")
-    if before is not None:
-        before.release()
+    project.file.replace_lock(lock)
 
 
 def confirm_unsaved(session: Session, then: Action) -> None:
@@ -212,8 +206,10 @@ def ask_unsaved_now(session: Session, project: Project, then: Action) -> None:
     if is_settled and not has_unsaved_changes(project):
         then.apply(session)
         return
-    if project.path:
-        sentences = [_("{name} has changes that are not saved.").format(name=project.path.name)]
+    if project.file.path:
+        sentences = [
+            _("{name} has changes that are not saved.").format(name=project.file.path.name)
+        ]
     else:
         sentences = [_("This project has changes that are not saved.")]
     save = do(save_then, then)
@@ -248,7 +244,7 @@ def close_project(session: Session) -> None:
 def discard_project(session: Session) -> None:
     """Close the project and drop its changes."""
     set_project(session, None)
-    session.autosave.remove()
+    session.settings.autosave.remove()
 
 
 def request_quit(session: Session) -> None:
@@ -257,10 +253,9 @@ def request_quit(session: Session) -> None:
 
 
 def close_window(session: Session) -> None:
-    session.autosave.remove()
-    if session.project is not None and session.project.file_lock is not None:
-        session.project.file_lock.release()
-        session.project.file_lock = None
+    session.settings.autosave.remove()
+    if session.project is not None:
+        session.project.file.replace_lock(None)
     session.is_quitting = True
 
 
@@ -274,8 +269,8 @@ def _ask_where(session: Session, project: Project, then: Action | None) -> None:
     session.dialogs.show(
         FileDialog(
             title=_("Save the project"),
-            folder=project.path.parent if project.path else session.usual_folder,
-            name=project.path.name if project.path else f"{project.name}{PROJECT}",
+            folder=project.file.path.parent if project.file.path else session.settings.usual_folder,
+            name=project.file.path.name if project.file.path else f"{project.file.name}{PROJECT}",
             suffixes=(PROJECT,),
             writes=True,
             chosen=lambda path: do(write_project, path, then),

@@ -24,7 +24,7 @@ def save_curves(session: Session, project: Project, path: Path) -> None:
     curves = project.curves.value
     if curves is None:
         return
-    check_writable(path, sources=project.sources)
+    check_writable(path, sources=project.file.sources)
     if path.suffix.lower() == ".png":
         picture = draw_curves(curves)
         write_atomically(path, lambda file: file.write(picture))
@@ -35,5 +35,5 @@ def save_curves(session: Session, project: Project, path: Path) -> None:
 
 @with_project
 def _ask_curves(session: Session, project: Project, suffix: str) -> None:
-    name = _("{project} distortion").format(project=project.name) + suffix
+    name = _("{project} distortion").format(project=project.file.name) + suffix
     session.ask_file(_("Save the curves"), (suffix,), lambda path: do(save_curves, path), name=name)

@@ -1,6 +1,5 @@
 """Actions on whole keys, and settings of time."""
 
-from dataclasses import replace
 from typing import Any
 
 from app.document import (
@@ -152,7 +151,7 @@ def _selected_or_at_playhead(session: Session, project: Project) -> KeysByChanne
 
 def set_default_easing(session: Session, easing: Easing) -> None:
     """Set the easing of new keys."""
-    session.preferences = replace(session.preferences, easing=easing)
+    session.settings.prefer(easing=easing)
 
 
 @with_project

@@ -58,7 +58,7 @@ def key_handles_at_playhead(session: Session, project: Project, handles: Sequenc
     new = tuple(identity for identity in handles if layer.track_of(identity) is None)
     if new:
         frame = playback.edited_frame(session, project)
-        key = TrackKey(frame=frame, place=0j, easing=session.preferences.easing)
+        key = TrackKey(frame=frame, place=0j, easing=session.settings.preferences.easing)
         command = track_commands.put_track(project.active, Track(handles=new, keys=(key,)))
         project.history.do(Command(_("Key handle"), command.change), gesture=gesture)
     known = {layer.track_of(identity) for identity in handles} - {None}
@@ -75,7 +75,7 @@ def _key(session: Session, project: Project, track: Track, gesture: object) -> N
     own = find_key_frame(session, project.document, track, frame)
     if own is None or own in track.key_frames:
         return
-    easing, clip = session.preferences.easing, project.clip
+    easing, clip = session.settings.preferences.easing, project.clip
 
     def put(place: complex, turn: float | None = None) -> None:
         command = track_commands.put_track_key(
@@ -117,7 +117,7 @@ def set_handle_value(
     frame = playback.current_frame(session, project)
     own = find_key_frame(session, project.document, track, frame)
     if own is not None:
-        key, easing = track_commands.put_track_key, session.preferences.easing
+        key, easing = track_commands.put_track_key, session.settings.preferences.easing
         velocity = velocity_at(track, project.clip, frame)
         editing.edit_layer(
             session, key, handle, own, place, turn=turn, velocity=velocity, easing=easing

@@ -41,7 +41,9 @@ def next_correction_jobs(session: Session, project: Project) -> Iterator[Job]:
 def correction_jobs_for_shown_frame(session: Session, project: Project) -> Iterator[Job]:
     """Yield jobs for the shown frame's correction, and for base motions that drags need."""
     # Pose drags come first, except drags that wait for the shown frame.
-    if not (project.pulls and session.prepares_ahead) or is_track_drag_pending(session, project):
+    if not (project.pulls and session.settings.prepares_ahead) or is_track_drag_pending(
+        session, project
+    ):
         yield from _follow(session, project)
         yield from _ground(session, project)
 
@@ -58,7 +60,7 @@ def _follow(session: Session, project: Project) -> Iterator[Job]:
     for clip, runtime, corrected in _corrected(project):
         work = corrected.missing_here(project.document, frame, project.samplers)
         # The next pose drag must not wait until all frames are prepared.
-        is_wanted = corrected.is_begun or is_urgent or not session.prepares_ahead
+        is_wanted = corrected.is_begun or is_urgent or not session.settings.prepares_ahead
         if work is not None and is_wanted:
             yield _job(session, project, CORRECTING_SHOWN_FRAME, runtime, clip, work)
             return

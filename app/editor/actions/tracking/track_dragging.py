@@ -132,7 +132,7 @@ def commit_track_key(session: Session, project: Project, held: TrackDrag) -> boo
         place,
         turn=turn,
         velocity=velocity,
-        easing=session.preferences.easing,
+        easing=session.settings.preferences.easing,
     )
     project.history.do(command, gesture=held.gesture)
     return True

@@ -25,7 +25,7 @@ def make_ghosts(session: Session, project: Project, drawing: GpuResources) -> tu
     """Return the onion skins of all layers that are visible then and look different."""
     if project.playhead.since is not None or project.layer_runtime.shown is None:
         return ()
-    preferences, now = session.preferences, project.layer_runtime.shown.frame
+    preferences, now = session.settings.preferences, project.layer_runtime.shown.frame
     ghosts = []
     sides = (
         (-1, preferences.ghosts_before, GHOST_BEFORE),
@@ -90,7 +90,7 @@ def _ghost(
 
 def count_meshes_behind(session: Session, project: Project, meshes: int) -> int:
     """Return how many meshes lie behind the ghosts: all, or only a background's."""
-    if session.preferences.ghosts_in_front:
+    if session.settings.preferences.ghosts_in_front:
         return meshes
     document, shows = project.document, project.layer_runtimes
     frame = max((each.shown.frame for each in shows.values() if each.shown), default=0)

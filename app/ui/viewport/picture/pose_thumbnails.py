@@ -43,13 +43,13 @@ class PosePictures:
             for layer, _ in self._wanted
             if layer in project.layer_runtimes
         }
-        kind = (meshes, self._side, session.preferences.theme)
+        kind = (meshes, self._side, session.settings.preferences.theme)
         if kind != self._kind:
             self.release()
             self._kind = kind
         for each in self._targets.keys() - self._wanted:
             self._targets.pop(each).release()
-        desk = Backdrop(colour=to_rgba(PALETTES[session.preferences.theme].desk))
+        desk = Backdrop(colour=to_rgba(PALETTES[session.settings.preferences.theme].desk))
         for layer, pose in self._wanted - self._targets.keys():
             if layer not in meshes or pose not in project.document.layer(layer).poses:
                 continue

@@ -135,7 +135,7 @@ def _contents(session: Session, look: Look, guide: TutorialState, text: str) -> 
     imgui.push_text_wrap_pos(imgui.get_cursor_start_pos().x + width)
     imgui.text_unformatted(text)
     imgui.pop_text_wrap_pos()
-    exported = session.exported
+    exported = session.export.completed
     if is_done and exported is not None:
         if main_button(look, f"{icons.ICON_FA_FOLDER_OPEN}  {_('Open folder')}"):
             actions.append(do(exporting.open_folder, exported.out.parent))

@@ -76,7 +76,7 @@ def _to_step(
         case "export":
             return _to_export(session, screen.project, places)
         case "done":
-            exported = session.exported
+            exported = session.export.completed
             name = "GIF" if exported is None else exported.out.name
             return TutorialStep(
                 _(

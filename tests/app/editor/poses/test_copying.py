@@ -141,7 +141,7 @@ def test_a_pose_of_another_shape_cannot_be_pasted(session):
 
 def test_a_pose_that_no_key_holds_is_copied_and_gives_way_to_a_pasted_one(session):
     project = session.project
-    session.preferences = Preferences(auto_key=False)
+    session.settings.preferences = Preferences(auto_key=False)
     go(session, 6)
     copying.copy_pose_or_keys(session)
     go(session, 0)

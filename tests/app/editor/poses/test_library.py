@@ -59,7 +59,7 @@ def test_a_blend_is_between_and_certified_and_its_beginning_is_not_forgotten(ses
 def test_without_auto_key_a_blend_waits_to_be_inserted(session):
     project = session.project
     kept = keep(session, 6)
-    session.preferences = Preferences(auto_key=False)
+    session.settings.preferences = Preferences(auto_key=False)
     go(session, 3)
     for share in (0.5, 1.0):
         library.blend_library_pose(session, kept.name, share)

@@ -227,7 +227,7 @@ def test_a_drawing_without_handles_moves_too(tmp_path):
 def test_an_in_between_becomes_a_pose_of_its_own(tmp_path, auto_key, is_there):
     """Also where it was not worked out yet when the hand began."""
     session = session_of(with_handles(moving_document(6)), tmp_path)
-    session.preferences = Preferences(auto_key=auto_key)
+    session.settings.preferences = Preferences(auto_key=auto_key)
     settle(session)
     project = session.project
     playback.seek(session, 3)

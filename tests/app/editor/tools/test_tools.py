@@ -90,7 +90,7 @@ def test_a_press_is_for_one_tool(session, spot, name):
 @pytest.mark.parametrize(("auto_key", "most_keys"), [(True, 3), (False, 1)])
 def test_whatever_a_press_began_is_taken_back_wholly(session, auto_key, most_keys):
     project = session.project
-    session.preferences = Preferences(auto_key=auto_key)
+    session.settings.preferences = Preferences(auto_key=auto_key)
     flags = [
         dict(zip(("ctrl", "shift", "alt"), held, strict=True))
         for held in product((0, 1), repeat=3)
