@@ -36,7 +36,6 @@ REPLACED_LONG = {
 TABLES = {
     "app/export_formats.py",
     "app/storage/project/document_json.py",
-    "app/ui/shortcuts/table.py",
 }
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from inspect import unwrap
 from typing import Any, Concatenate, ParamSpec, TypeVar
 
 P = ParamSpec("P")
@@ -20,8 +21,9 @@ class Action:
     @property
     def name(self) -> str:
         """The verb's name without its arguments, and the name of an action among them."""
-        module = getattr(self.verb, "__module__", "").rpartition(".")[2]
-        verb = getattr(self.verb, "__qualname__", type(self.verb).__name__)
+        function = unwrap(self.verb)
+        module = getattr(function, "__module__", "").rpartition(".")[2]
+        verb = getattr(function, "__qualname__", type(function).__name__)
         then = [each.name for each in self.arguments if isinstance(each, Action)]
         return " → ".join([f"{module}.{verb}", *then])
 

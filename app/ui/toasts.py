@@ -3,7 +3,7 @@
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, Toast, do
-from app.editor.actions.viewing import dismiss_toast
+from app.editor.actions.dialog_actions import dismiss_toast
 from app.texts import _
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import TOAST, small_text

@@ -18,7 +18,6 @@ from app.editor.actions.project_files import files
 from app.errors import display_name
 from app.render import Thumbnail
 from app.texts import _
-from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.theme import LARGE, SMALL, TITLE, Look, colour_u32
 from app.ui.style.widgets import bold_text, main_button, push_text_size, show_picture, text_button
 
@@ -78,10 +77,9 @@ def _greeting(session: Session, look: Look) -> list[Action]:
     with push_text_size(LARGE):
         imgui.text_colored(look.palette.dim, text)
     imgui.dummy(ImVec2(0, 0.8 * look.em))
-    binding = BINDINGS["open"]
     text = f"{icons.ICON_FA_FOLDER_OPEN}  {_('Open image or project…')}"
     if main_button(look, text, 16 * look.em):
-        actions.append(binding.action)
+        actions.append(files.ask_file_to_open.action)
     imgui.same_line(0, look.em)
     imgui.align_text_to_frame_padding()
     busy = next((kind for kind in session.jobs.kinds), None)

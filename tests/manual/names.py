@@ -8,6 +8,7 @@ import ast
 import re
 from collections.abc import Iterator
 from functools import cache
+from itertools import chain
 from pathlib import Path
 
 from app.cli.main import COMMANDS, build_parser
@@ -27,12 +28,13 @@ from app.ui.shortcuts.keys import (
     KEYS,
     MAC_MODIFIERS,
     SHIFT,
+    chords_of,
     format_chord,
     format_modified,
 )
-from app.ui.shortcuts.manual import PAGES
 from app.ui.shortcuts.pointer_help import POINTER_HELP
-from app.ui.shortcuts.table import BINDINGS, MENUS
+from app.ui.shortcuts.table import ACTIONS, MENUS
+from app.ui.shortcuts.window_actions import PAGES
 
 ROOT = Path(__file__).parents[2]
 ASKED = ROOT / "app" / "ui"  # where what is read on the screen is written
@@ -50,7 +52,7 @@ def check_name(text: str) -> None:
     """Refuse what is written in italics and is no name of the program, by its whole path."""
     first, *rest = text.split(ARROW)
     if first in MENUS:
-        entries = {binding.label for binding in MENUS[first].values()}
+        entries = {spec.label for spec in chain(*MENUS[first])}
         if all(part in entries or _is_written(part, "bars/menus.py") for part in rest[:1]):
             rest = rest[1:]
         else:
@@ -66,15 +68,15 @@ def check_name(text: str) -> None:
 
 def key(name: str) -> tuple[str, str]:
     """Return the keys of a named action, elsewhere and on macOS."""
-    if name not in BINDINGS:
+    if name not in ACTIONS:
         raise UnknownNameError(f"no action is named {name!r}")
-    binding = BINDINGS[name]
+    binding = ACTIONS[name]
     if not binding.keys:
         if not binding.key_text:
             raise UnknownNameError(f"{name!r} has no keys")
         return binding.key_text, binding.key_text
-    mac = binding.chords(is_mac=True)[0]
-    return format_chord(binding.chords(is_mac=False)[0], is_mac=False), format_chord(
+    mac = chords_of(binding, is_mac=True)[0]
+    return format_chord(chords_of(binding, is_mac=False)[0], is_mac=False), format_chord(
         mac, is_mac=True
     )
 
@@ -101,11 +103,9 @@ def key_groups() -> dict[str, list[tuple[str, tuple[str, str]]]]:
     """Return all keys by the menus that their actions are in."""
     return {
         menu: [
-            (binding.label, key(name))
-            for name, binding in bindings.items()
-            if binding.keys or binding.key_text
+            (spec.label, key(spec.name)) for spec in chain(*groups) if spec.keys or spec.key_text
         ]
-        for menu, bindings in MENUS.items()
+        for menu, groups in MENUS.items()
     }
 
 
@@ -156,7 +156,7 @@ def _subparser(parser: argparse.ArgumentParser, command: str) -> argparse.Argume
 
 
 def _is_known(part: str) -> bool:
-    tables: set[str] = {binding.label for binding in BINDINGS.values()} | set(PAGES) | set(MENUS)
+    tables: set[str] = {binding.label for binding in ACTIONS.values()} | set(PAGES) | set(MENUS)
     tables |= {format_.label for format_ in EXPORT_FORMATS.values()} | {
         sample.name for sample in tutorials.sample_files()
     }

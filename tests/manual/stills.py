@@ -8,7 +8,7 @@ from harness import Robot
 
 from app.document import Target
 from app.document.commands import handle_commands
-from app.editor.actions import editing, playback, viewing
+from app.editor.actions import dialog_actions, editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import set_targets
@@ -276,9 +276,9 @@ def _sheet(window: Film, path: Path) -> None:
     """The sheet of keys."""
     open_sample(window, "giraffe", frame=0)
     window.resize((1280, 1000))
-    window.act(viewing.show_shortcuts)
+    window.act(dialog_actions.show_shortcuts)
     _still(window, path)
-    window.act(viewing.close_dialog)
+    window.act(dialog_actions.close_dialog)
 
 
 def _welcome(window: Film, path: Path) -> None:

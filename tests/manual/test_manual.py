@@ -14,8 +14,8 @@ from app.errors import LissomError
 from app.solving.script.pose_script import parse_pose_script
 from app.storage import manual_page
 from app.storage.project import document_json
-from app.ui.shortcuts.manual import PAGES
-from app.ui.shortcuts.table import BINDINGS, MENUS
+from app.ui.shortcuts.table import MENUS
+from app.ui.shortcuts.window_actions import PAGES, open_manual_page
 from tests.manual import build, motion, names, window
 from tests.readme.shown import shown_now
 
@@ -184,9 +184,9 @@ def test_each_tab_has_its_page():
     assert set(PAGES) == set(shown_now()["tabs"])
     for page in PAGES.values():
         assert (build.PAGES / f"{page}.md").is_file()
-    assert next(iter(MENUS["Help"])) == "manual"
+    assert MENUS["Help"][0][0] is open_manual_page
     assert names.key("manual") == ("F1", "F1")
-    assert BINDINGS["manual"].label == "Manual"
+    assert open_manual_page.label == "Manual"
 
 
 def test_the_command_copies_it_whole(tmp_path, capsys):

@@ -10,7 +10,7 @@ from app.editor.parts.settings import SessionSettings
 from app.render import Renderer
 from app.render.gpu.context import create_context
 from app.ui.bars.icons import GROUPS
-from app.ui.shortcuts.table import BINDINGS, MENUS
+from app.ui.shortcuts.table import MENUS
 from app.ui.window.window import Window
 
 Shown = dict[str, list[str]]
@@ -33,7 +33,7 @@ def shown_now() -> Shown:
             for panel in params.docking_params.dockable_windows
             if panel.dock_space_name == "side"
         ],
-        "tools": [BINDINGS[name].label for names in GROUPS for name in names],
+        "tools": [spec.label for group in GROUPS for spec in group],
     }
 
 

@@ -138,9 +138,9 @@ def read_window(left: dict[str, None]) -> None:
 
 
 def read_table(left: dict[str, None]) -> None:
-    from app.ui.shortcuts.table import BINDINGS  # noqa: PLC0415
+    from app.ui.shortcuts.table import ACTIONS  # noqa: PLC0415
 
-    for action in BINDINGS.values():
+    for action in ACTIONS.values():
         left.update(dict.fromkeys(each for each in (action.label, action.hint) if english(each)))
 
 

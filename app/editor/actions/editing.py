@@ -14,20 +14,19 @@ from app.document import (
     all_keys,
     changed_ranges,
     channel_commands,
-    clip_of,
     frames_in,
     pose_channel,
 )
 from app.editor import pending_changes
 from app.editor.actions import playback
+from app.editor.actions.action_spec import named_action, unless
+from app.editor.actions.layer_setup.layer_runtimes import update_layer_runtimes
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement
 from app.editor.actions.posing.pose_commit import commit_targets
 from app.editor.actions.posing.pose_drag import cancel_drag, revert_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work.layer_runtime import LayerRuntime
-from app.storage import decode_picture
 from app.texts import N_, _
 
 Arguments = ParamSpec("Arguments")
@@ -69,6 +68,23 @@ def note_widget_in_use(_: Session, project: Project, widget: int) -> None:
     project.gesture = object() if widget else None
 
 
+def _undo_text(_session: Session, project: Project) -> str:
+    step = project.history.undo_label
+    if project.motion_setup is not None and project.motion_setup.past:
+        step = _("Move a joint")
+    elif project.motion_job is not None:
+        step = _("Apply motion preset")
+    return "" if step is None else _("Undo “{step}”").format(step=step)
+
+
+@named_action(
+    "undo",
+    _("Undo"),
+    "Ctrl+Z",
+    detail=_undo_text,
+    why_disabled=unless(_undo_text, _("There is nothing to undo.")),
+    repeats_while_held=True,
+)
 @with_project
 def undo(session: Session, project: Project) -> None:
     """Undo the last step. A drag that is still held goes on in that step if the step is redone.
@@ -88,12 +104,8 @@ def undo(session: Session, project: Project) -> None:
     if waiting is not None:
         _show_step_notice(session, UNDONE, waiting)
         return
-    before, unkeyed, label = (
-        project.document,
-        project.history.preview_pose,
-        project.history.undo_label,
-    )
-    position = project.history.position
+    before, unkeyed = project.document, project.history.preview_pose
+    label, position = project.history.undo_label, project.history.position
     # Steps that came after the targets were set are undone before them.
     unseen = [pull for pull in project.pulls if pull.kept is None and pull.position >= position]
     # A released drag must be redoable: it becomes a step before that step is undone.
@@ -120,6 +132,19 @@ def revert_gesture(session: Session, project: Project, gesture: object) -> None:
     _forget_what_is_gone(project)
 
 
+def _redo_text(_session: Session, project: Project) -> str:
+    step = project.history.redo_label
+    return "" if step is None else _("Redo “{step}”").format(step=step)
+
+
+@named_action(
+    "redo",
+    _("Redo"),
+    "Ctrl+Shift+Z, Ctrl+Y",
+    detail=_redo_text,
+    why_disabled=unless(_redo_text, _("There is nothing to redo.")),
+    repeats_while_held=True,
+)
 @with_project
 def redo(session: Session, project: Project) -> None:
     before, unkeyed = project.document, project.history.preview_pose
@@ -157,6 +182,11 @@ def select_handles(_: Session, project: Project, handles: frozenset[int]) -> Non
     _forget_what_is_gone(project)
 
 
+def _select_text(session: Session, _project: Project) -> str:
+    return _("Select all keys") if session.is_timeline_focused else _("Select all handles")
+
+
+@named_action("select all", _("Select all"), "Ctrl+A", detail=_select_text)
 @with_project
 def select_all(session: Session, project: Project) -> None:
     """Select every handle or, in the timeline, the keys of all channels."""
@@ -166,6 +196,15 @@ def select_all(session: Session, project: Project) -> None:
         select_handles(session, frozenset(handle.id for handle in project.layer.handles))
 
 
+@named_action(
+    "deselect",
+    _("Deselect"),
+    "Escape",
+    why_disabled=unless(
+        lambda _, project: project.selected_handles or project.selected_keys,
+        _("No handle or key is selected."),
+    ),
+)
 @with_project
 def deselect_all(_: Session, project: Project) -> None:
     project.selected_handles, project.selected_keys = frozenset(), {}
@@ -201,6 +240,19 @@ def movable_keys(document: Document) -> KeysByChannel:
     }
 
 
+def _has_deletable(session: Session, project: Project) -> bool:
+    """Return whether keys, handles, a joint of a motion preset or a channel are selected."""
+    joint = project.motion_setup is not None and project.motion_setup.selected_joint
+    is_channel = session.is_timeline_focused and project.channel.kind is not POSE
+    return bool(joint or project.selected_handles or project.selected_keys or is_channel)
+
+
+@named_action(
+    "delete",
+    _("Delete"),
+    "Delete, Backspace",
+    why_disabled=unless(_has_deletable, _("Select a handle or a key first.")),
+)
 @with_project
 def delete_selection(session: Session, project: Project) -> None:
     """Delete the selected keys or, in the timeline, the selected channel, or selected handles.
@@ -231,34 +283,6 @@ def _delete_keys(session: Session, project: Project) -> None:
     edit_document(session, channel_commands.delete_keys(left or project.selected_keys))
     if keeping:
         session.notices.show(_(FIRST_KEY_STAYS).format(layers=", ".join(keeping)))
-
-
-def update_layer_runtimes(project: Project) -> None:
-    """Match the layer runtimes to the layers of the document."""
-    document = project.document
-    gone = project.layer_runtimes.keys() - {layer.id for layer in document.layers}
-    for identity in gone:
-        del project.layer_runtimes[identity]
-    # Runtimes of layers that undo and redo may bring back are kept as well.
-    spare = project.pictures.keys() - {layer.picture for layer in document.layers}
-    for file in spare - project.history.picture_files if spare else ():
-        del project.pictures[file]
-    for layer in document.layers:
-        runtime = project.layer_runtimes.get(layer.id)
-        if runtime is not None and runtime.file is layer.picture:
-            project.pictures[layer.picture] = runtime.picture
-            continue
-        if layer.picture not in project.pictures:
-            decoded = decode_picture(layer.picture.data, layer.name)
-            project.pictures[layer.picture] = decoded
-        picture = project.pictures[layer.picture]
-        project.layer_runtimes[layer.id] = LayerRuntime.of(
-            clip_of(document, layer.id), picture, among=len(document.layers)
-        )
-    if project.active not in project.layer_runtimes:
-        posable = [layer.id for layer in document.layers if not layer.still]
-        project.active = (posable or [layer.id for layer in document.layers])[-1]
-        project.selected_handles = project.selected_frames = frozenset()
 
 
 def _forget_what_is_gone(project: Project) -> None:

@@ -3,8 +3,11 @@
 from bisect import bisect_left
 
 from app.document import display_frame, frames_in
+from app.editor.action import do
+from app.editor.actions.action_spec import ActionSpec, named_action
 from app.editor.project import Project
 from app.editor.session import Session, with_project
+from app.texts import _
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0)
 
@@ -22,6 +25,14 @@ def scrub(session: Session, frame: int) -> None:
     seek(session, frame)
 
 
+@named_action(
+    "play",
+    _("Play"),
+    icon="PLAY",
+    hint=_("Play or stop"),
+    active=lambda session: session.project and session.project.playhead.since is not None,
+    key_text=_("Space"),
+)
 @with_project
 def toggle_play(session: Session, project: Project) -> None:
     turn = project.playhead.play if project.playhead.since is None else project.playhead.pause
@@ -55,10 +66,46 @@ def step_frames(session: Session, project: Project, frames: int) -> None:
     seek(session, current_frame(session, project) + frames)
 
 
+PREVIOUS_FRAME = ActionSpec(
+    do(step_frames, -1),
+    "back",
+    _("Previous frame"),
+    "PageUp",
+    icon="BACKWARD_STEP",
+    repeats_while_held=True,
+)
+NEXT_FRAME = ActionSpec(
+    do(step_frames, 1),
+    "on",
+    _("Next frame"),
+    "PageDown",
+    icon="FORWARD_STEP",
+    repeats_while_held=True,
+)
+
+
 @with_project
 def go_to_key(session: Session, project: Project, direction: int) -> None:
     """Go to the next key (1) of the selected row, or the previous one (−1); stop at the ends."""
     _go_to_next(session, project, keyed_frames(project), direction)
+
+
+PREVIOUS_KEY = ActionSpec(
+    do(go_to_key, -1),
+    "previous key",
+    _("Previous key"),
+    "DownArrow",
+    icon="ANGLES_LEFT",
+    repeats_while_held=True,
+)
+NEXT_KEY = ActionSpec(
+    do(go_to_key, 1),
+    "next key",
+    _("Next key"),
+    "UpArrow",
+    icon="ANGLES_RIGHT",
+    repeats_while_held=True,
+)
 
 
 def keyed_frames(project: Project) -> list[int]:
@@ -90,6 +137,18 @@ def go_to_marker(session: Session, project: Project, direction: int) -> None:
     _go_to_next(session, project, [frame for frame in marked if frame in frames], direction)
 
 
+PREVIOUS_MARKER = ActionSpec(
+    do(go_to_marker, -1),
+    "previous marker",
+    _("Previous marker"),
+    "Shift+PageUp",
+    repeats_while_held=True,
+)
+NEXT_MARKER = ActionSpec(
+    do(go_to_marker, 1), "next marker", _("Next marker"), "Shift+PageDown", repeats_while_held=True
+)
+
+
 def _go_to_next(session: Session, project: Project, frames: list[int], direction: int) -> None:
     stop_playback(session)
     here = current_frame(session, project)
@@ -101,12 +160,14 @@ def _go_to_next(session: Session, project: Project, frames: list[int], direction
         seek(session, there)
 
 
+@named_action("start", _("First frame"), "Ctrl+PageUp", icon="BACKWARD_FAST")
 @with_project
 def go_to_start(session: Session, project: Project) -> None:
     """Go to the first frame that plays."""
     seek(session, project.document.played_frames.first)
 
 
+@named_action("end", _("Last frame"), "Ctrl+PageDown", icon="FORWARD_FAST")
 @with_project
 def go_to_end(session: Session, project: Project) -> None:
     """Go to the last frame that plays."""

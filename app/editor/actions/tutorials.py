@@ -18,6 +18,7 @@ from app.document import (
     scene_commands,
 )
 from app.editor.action import do
+from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.project_files import files, saving
 from app.editor.actions.project_files.saving import PROJECT
 from app.editor.error_reports import run_job
@@ -49,6 +50,7 @@ STORIES = {
 }
 
 
+@named_action("first animation", _("Your first animation"), needs_project=False)
 def begin_tutorial(session: Session) -> None:
     """Open a copy of the giraffe without motion, and guide the person to make it bow."""
 
@@ -70,6 +72,16 @@ def install_tutorial(session: Session, opened: files.OpenedFile, guide: Tutorial
     session.tutorial = _attached(session, guide)
 
 
+def is_tutorial_shown(session: Session) -> bool:
+    return session.tutorial is not None and session.tutorial.project is not None
+
+
+@named_action(
+    "leave guide",
+    _("End guide"),
+    "Escape",
+    why_disabled=unless(lambda session, _: is_tutorial_shown(session), _("No guide is open.")),
+)
 def end_tutorial(session: Session) -> None:
     """End the tutorial; the project stays."""
     session.tutorial = None
@@ -89,10 +101,6 @@ def update_tutorial(session: Session) -> None:
     elif session.active_tool is None and project.timeline.gesture is None:
         # The next step must not disturb a drag.
         session.tutorial = _advanced(session, project, guide)
-
-
-def is_tutorial_shown(session: Session) -> bool:
-    return session.tutorial is not None and session.tutorial.project is not None
 
 
 def is_first_pose_changed(layer: Layer) -> bool:

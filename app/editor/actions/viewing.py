@@ -1,19 +1,14 @@
-"""The look of the window: camera, overlays, theme, dialogs."""
+"""The look of the window: camera, overlays, theme."""
 
-import os
-import webbrowser
 from dataclasses import replace
 from functools import reduce
-from pathlib import Path
 from typing import Any, Literal
 
 from app.document import Baseline, Meshing, Variant
-from app.editor.action import Action, do
-from app.editor.parts.dialogs import Dialog, FileDialog, ShortcutSheet
-from app.editor.parts.notices import Toast
+from app.editor.action import do
+from app.editor.actions.action_spec import ActionSpec, named_action
 from app.editor.project import Project, fit_view_around
 from app.editor.session import CurveKind, HeatMap, Session, Tint, with_project
-from app.errors import ImportLog, LissomError
 from app.motion import BoundingBox, bounding_box
 from app.render import View
 from app.storage import (
@@ -22,9 +17,8 @@ from app.storage import (
     MOST_GHOSTS,
     SMALLEST_SCALE,
     ThemeName,
-    manual_page,
 )
-from app.texts import _, ngettext
+from app.texts import _
 
 SCALE_STEP = 0.25
 LEAST_PART = 0.05  # of the viewport's width; each method keeps at least this share
@@ -40,6 +34,12 @@ def set_view(_: Session, project: Project, camera: View | None) -> None:
     project.awaits_extent = False
 
 
+FIT_PICTURE = ActionSpec(do(set_view, None), "fit picture", _("Fit picture"))
+
+
+@named_action(
+    "fit", _("Fit pose"), "Home", icon="EXPAND", hint=_("Show the whole shape in this frame")
+)
 @with_project
 def zoom_to_pose(session: Session, project: Project) -> None:
     shown = [runtime.shown for runtime in project.layer_runtimes.values()]
@@ -50,12 +50,14 @@ def zoom_to_pose(session: Session, project: Project) -> None:
         zoom_to_box(session, reduce(BoundingBox.joined, boxes))
 
 
+@named_action("fit motion", _("Fit motion"), "Shift+Home")
 @with_project
 def zoom_to_motion(_: Session, project: Project) -> None:
     """Show the area that all layers cover in any frame, as soon as it is measured."""
     project.awaits_extent = True
 
 
+@named_action("fit selection", _("Fit selection"), "F")
 @with_project
 def zoom_to_selection(session: Session, project: Project) -> None:
     """Show the selected handles with a margin, or the whole layer."""
@@ -76,6 +78,7 @@ def zoom_to_box(session: Session, box: BoundingBox) -> None:
     set_view(session, fit_view_around(box, session.screen))
 
 
+@named_action("actual size", _("Actual size"), "1")
 @with_project
 def zoom_to_actual_size(session: Session, project: Project) -> None:
     """Show one pixel of the picture as one pixel of the screen, around the same centre."""
@@ -92,11 +95,59 @@ def toggle_overlay(session: Session, overlay: OverlayName) -> None:
     session.overlays = replace(session.overlays, **shown)
 
 
+def _overlay(overlay: OverlayName, name: str, label: str, keys: str, **more: Any) -> ActionSpec:
+    def is_shown(session: Session) -> bool:
+        return bool(getattr(session.overlays, overlay))
+
+    return ActionSpec(do(toggle_overlay, overlay), name, label, keys, active=is_shown, **more)
+
+
+HANDLES = _overlay(
+    "handles", "handles", _("Handles"), "H", icon="CIRCLE_DOT", hint=_("Show or hide the handles")
+)
+WIREFRAME = _overlay(
+    "wireframe", "wireframe", _("Wireframe"), "W", icon="DRAW_POLYGON", hint=_("Show the triangles")
+)
+OUTLINE = _overlay(
+    "outline",
+    "outline",
+    _("Outline"),
+    "C",
+    icon="VECTOR_SQUARE",
+    hint=_("Show the edge of the shape"),
+)
+ONION_SKIN = _overlay(
+    "onion",
+    "onion skin",
+    _("Onion skin"),
+    "O",
+    icon="GHOST",
+    hint=_("Show the poses before and after"),
+)
+MIRROR_AXIS = _overlay("mirror", "mirror axis", _("Mirror axis"), "Ctrl+M", mac_keys="Ctrl+Shift+M")
+MOTION_PATHS = _overlay(
+    "paths",
+    "motion paths",
+    _("Motion paths"),
+    "J",
+    icon="ROUTE",
+    hint=_("Show the paths of the selected handles, with a dot for each frame"),
+)
+
+
 def show_heat_map(session: Session, heat_map: HeatMap) -> None:
     """Colour the shape by one of the distortions, or show its picture."""
     session.overlays = replace(session.overlays, heat_map=heat_map)
 
 
+@named_action(
+    "heat map",
+    _("Heat map"),
+    "D",
+    icon="TEMPERATURE_HALF",
+    hint=_("Colour the shape by its distortion"),
+    active=lambda session: session.overlays.heat_map != "none",
+)
 def toggle_heat_map(session: Session) -> None:
     """Show the heat map of the conformal distortion, or hide the heat map."""
     show_heat_map(session, "k" if session.overlays.heat_map == "none" else "none")
@@ -107,6 +158,14 @@ def show_curves(session: Session, kind: CurveKind) -> None:
     session.curves = kind
 
 
+@named_action(
+    "split view",
+    _("Split view"),
+    "U",
+    icon="TABLE_COLUMNS",
+    hint=_("Compare with another method, beside a divider that can be dragged"),
+    active=lambda session: session.compare_view is not None,
+)
 def toggle_comparison(session: Session) -> None:
     """Show a second method beside the drawing's method, or the drawing alone."""
     if session.compare_view is None:
@@ -165,16 +224,21 @@ def preview_meshing(_: Session, project: Project, meshing: Meshing) -> None:
     project.meshing = meshing
 
 
+@named_action("theme", _("Light or dark"), needs_project=False)
 def toggle_theme(session: Session) -> None:
     """Switch between the dark and the light theme."""
     theme: ThemeName = "light" if session.settings.preferences.theme == "dark" else "dark"
     session.settings.prefer(theme=theme)
 
 
+@named_action("larger", _("Larger interface"), "Ctrl+Equal, Ctrl+KeypadAdd", needs_project=False)
 def enlarge_interface(session: Session) -> None:
     _scale_interface(session, SCALE_STEP)
 
 
+@named_action(
+    "smaller", _("Smaller interface"), "Ctrl+Minus, Ctrl+KeypadSubtract", needs_project=False
+)
 def shrink_interface(session: Session) -> None:
     _scale_interface(session, -SCALE_STEP)
 
@@ -189,111 +253,24 @@ def focus_timeline(session: Session, in_timeline: bool) -> None:  # noqa: FBT001
     session.is_timeline_focused = in_timeline
 
 
+@named_action(
+    "auto-key",
+    _("Auto-key"),
+    "K",
+    icon="KEY",
+    hint=_("Set keys by posing"),
+    active=lambda session: session.settings.preferences.auto_key,
+)
 def toggle_auto_key(session: Session) -> None:
     """Switch auto-key: whether posing makes and changes keys."""
     auto_key = not session.settings.preferences.auto_key
     session.settings.prefer(auto_key=auto_key)
 
 
-def show_dialog(session: Session, dialog: Dialog) -> None:
-    """Open a dialog in place of the open one."""
-    session.dialogs.show(dialog)
-
-
-def browse_files(session: Session, dialog: FileDialog) -> None:
-    """Set the state of the open file browser."""
-    session.dialogs.show(dialog)
-
-
-def choose_file(session: Session, dialog: FileDialog, path: Path) -> None:
-    """Give a path to the file dialog's action; the next file dialog opens in its folder."""
-    session.dialogs.close()
-    session.settings.prefer(folder=path.parent)
-    dialog.chosen(path).apply(session)
-
-
-def use_own_file_browser(session: Session) -> None:
-    """From now on, use Lissom's file browser instead of the system's dialogs."""
-    session.dialogs.use_own_file_browser()
-
-
 def show_tab(session: Session, title: str) -> None:
     session.panel_to_focus = title
-
-
-def show_shortcuts(session: Session) -> None:
-    session.dialogs.show(ShortcutSheet())
-
-
-def open_manual(session: Session, page: str) -> None:
-    """Show a page of the manual in the browser, and show its address in a notice.
-
-    Terminal browsers are skipped, since they would block the window, unless BROWSER names one.
-    """
-    path = manual_page(page)
-    try:
-        browser = webbrowser.get()
-        is_apart = type(browser) is not webbrowser.GenericBrowser or "BROWSER" in os.environ
-        is_open = is_apart and browser.open(path.as_uri())
-    except (webbrowser.Error, OSError):
-        is_open = False
-    if not is_open:
-        raise LissomError(_("no browser was found; the manual is {path}").format(path=path))
-    # The program that starts the browser may fail later, without an error here.
-    text = _("The manual opens in the browser. Its file is {path}.")
-    session.notices.show(text.format(path=path), topic="manual")
-
-
-def close_dialog(session: Session) -> None:
-    """Close the dialog without an action; the dialog below a report returns."""
-    session.dialogs.close()
-
-
-def answer_dialog(session: Session, action: Action) -> None:
-    """Close the dialog and run the chosen action."""
-    session.dialogs.close()
-    action.apply(session)
-
-
-def show_notice(session: Session, text: str) -> None:
-    session.notices.show(text)
-
-
-def dismiss_toast(session: Session, toast: Toast) -> None:
-    session.notices.dismiss(toast)
 
 
 def set_tint(session: Session, by: Tint | None) -> None:
     """Colour the drawing by depth or by stiffness; None shows its own colours."""
     session.tint = by
-
-
-def show_import_notice(session: Session, project: Project, summary: ImportLog) -> None:
-    """Show a notice about effects of a drawing that its import lost."""
-    if not summary.warnings:
-        return
-    project.is_import_log_open = True
-    count = len(summary.warnings)
-    session.notices.show(
-        ngettext(
-            "One thing looks different here. See the Layers tab.",
-            "{count} things look different here. See the Layers tab.",
-            count,
-        ).format(count=count),
-        topic="import",
-        label=_("Show"),
-        action=do(show_import_log),
-    )
-
-
-@with_project
-def show_import_log(session: Session, project: Project) -> None:
-    """Show the import log in the panel of layers."""
-    project.is_import_log_open = True
-    session.panel_to_focus = "Layers"
-
-
-@with_project
-def toggle_import_log(_: Session, project: Project) -> None:
-    """Show or hide the import log in the panel of layers."""
-    project.is_import_log_open = not project.is_import_log_open

@@ -17,10 +17,11 @@ from app.document import (
     switch_group_commands,
 )
 from app.editor.actions import editing, playback
+from app.editor.actions.action_spec import named_action
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.texts import ngettext
+from app.texts import _, ngettext
 from engine.geometry import contains
 
 
@@ -244,6 +245,13 @@ def note_listed_layer(_: Session, project: Project) -> None:
 def ask_layer_name(session: Session, identity: int | None) -> None:
     """Edit a layer's name in the list of layers; None ends the editing."""
     session.named_layer = identity
+
+
+@named_action("rename layer", _("Rename layer"), "F2")
+@with_project
+def rename_active_layer(session: Session, project: Project) -> None:
+    session.panel_to_focus = "Layers"
+    ask_layer_name(session, project.active)
 
 
 @with_project

@@ -8,8 +8,9 @@ from typing import NamedTuple
 from app.document import Document, Group, Layer, Meshing, clip_of, group_commands, layer_commands
 from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import editing, viewing
+from app.editor.actions import dialog_actions, editing
 from app.editor.actions.layer_setup import resolving
+from app.editor.actions.layer_setup.layer_runtimes import update_layer_runtimes
 from app.editor.actions.project_files import files
 from app.editor.error_reports import as_sentence
 from app.editor.layering.layer_selection import set_active_layer
@@ -172,9 +173,9 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
             project.history.do(command, gesture=gesture)
             if runtime is not None and identity == layer.id:
                 project.layer_runtimes[identity] = runtime
-        editing.update_layer_runtimes(project)
+        update_layer_runtimes(project)
         set_active_layer(session, identity)
-        viewing.show_import_notice(session, project, summary)
+        dialog_actions.show_import_notice(session, project, summary)
 
     pending_changes.begin_pending_change(session, project, ADDING, work, done)
 

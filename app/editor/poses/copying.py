@@ -18,6 +18,7 @@ from app.document import (
 )
 from app.editor import pending_changes
 from app.editor.actions import playback
+from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.posing.pose_drag import pose_at_playhead
 from app.editor.parts.clipboard import CopiedChannel, CopiedKeys, CopiedTrack
 from app.editor.poses import pose_insertion
@@ -32,6 +33,15 @@ COPYING = JobKind(_("Copying a pose"), _("The pose could not be copied"), "hand"
 KEYS_COPIED = "{count} keys copied."
 
 
+def _copy_text(session: Session, project: Project) -> str:
+    if is_copying_keys(session, project):
+        count = project.selected_key_count
+        return ngettext("Copy {count} key", "Copy {count} keys", count).format(count=count)
+    count = len(project.selected_layers)
+    return ngettext("Copy pose", "Copy poses of {count} layers", count).format(count=count)
+
+
+@named_action("copy", _("Copy"), "Ctrl+C", detail=_copy_text)
 @with_project
 def copy_pose_or_keys(session: Session, project: Project) -> None:
     """Copy the pose at the playhead or, in the timeline, the selected keys.
@@ -49,6 +59,15 @@ def copy_pose_or_keys(session: Session, project: Project) -> None:
         )
 
 
+@named_action(
+    "copy all",
+    _("Copy poses of all layers"),
+    "Ctrl+Alt+C",
+    why_disabled=unless(
+        lambda _, project: len(project.document.layers) > 1,
+        _("There is only one layer. Copy its pose."),
+    ),
+)
 @with_project
 def copy_all_poses(session: Session, project: Project) -> None:
     """Copy the poses of all layers at the playhead."""

@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 from app.document import Keyframe, Layer, LibraryPose, Pose, Target, pose_commands
 from app.editor.actions import editing, playback
+from app.editor.actions.action_spec import named_action
 from app.editor.actions.posing.pose_drag import drag_handles, end_drag_at, release_drag
 from app.editor.parts.clipboard import CopiedKeys
-from app.editor.poses import pasting, pose_insertion
+from app.editor.poses import pasting, pasting_targets, pose_insertion
 from app.editor.poses.paste_destinations import PasteDestination, find_paste_destination
 from app.editor.project import BlendPreview, Project
 from app.editor.session import Session, with_project
@@ -20,6 +21,9 @@ from app.texts import _
 KEEPING = JobKind(_("Saving a pose"), _("The pose could not be keyed"), "hand")
 
 
+@named_action(
+    "keep pose", _("Save pose"), "Shift+K", icon="PLUS", hint=_("Add this pose to the library")
+)
 @with_project
 def save_pose_to_library(session: Session, project: Project) -> None:
     """Save the pose at the playhead to the library."""
@@ -126,7 +130,9 @@ def blend_library_pose(
             name=name, owner=offer.owner.id, gesture=object()
         )
     project.blend_preview = replace(begun, share=share)
-    targets = pasting.pasted_targets(project, _paste_destination(project, offer), "as it is")
+    targets = pasting_targets.pasted_targets(
+        project, _paste_destination(project, offer), "as it is"
+    )
 
     def mix(start: DragStart, _: Mapping[int, Target]) -> Mapping[int, Target]:
         return {

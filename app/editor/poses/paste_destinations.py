@@ -37,14 +37,14 @@ class PasteDestination:
     is_own: bool
 
     @property
-    def disabled_reason(self) -> str:
-        """The reason why the layer cannot take the keys, as a sentence; empty if it can."""
+    def disabled_reason(self) -> str | None:
+        """The reason why the layer cannot take the keys, as a sentence; None if it can."""
         layer, source = self.layer, self.copied.layer
         if layer.still:
             text = _("“{layer}” is a still picture and has no poses.")
             return text.format(layer=layer.name)
         if self.is_own or self.pairs:
-            return ""
+            return None
         if not source.handles:
             text = _("The copied layer “{layer}” has no handles, so its pose fits no other layer.")
             return text.format(layer=source.name)
@@ -105,8 +105,8 @@ def find_active_paste_destination(
     return next((e for e in found if e.layer.id == project.active and e.copied.keys), None)
 
 
-def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
-    """Return why the copied keys cannot be pasted, as a sentence; empty if they can."""
+def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMode) -> str | None:
+    """Return why the copied keys cannot be pasted, as a sentence; None if they can."""
     copied = _copied(session)
     if not copied:
         return NOTHING_COPIED
@@ -125,7 +125,7 @@ def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMod
             "Nothing was swapped: no copied layer or handle has a partner. Set the pairs of "
             "names in the Poses tab."
         )
-    return ""
+    return None
 
 
 def skipped_layers_reasons(session: Session, project: Project, way: PasteMode) -> list[str]:

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 from app.document import (
     Keyframe,
-    Target,
     clip_of,
     parse_pairs,
     pose_channel,
@@ -15,22 +16,22 @@ from app.document import (
 from app.editor import pending_changes
 from app.editor.action import do
 from app.editor.actions import editing, playback
-from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.action_spec import ActionSpec
 from app.editor.poses import pose_insertion
 from app.editor.poses.paste_destinations import (
     PasteDestination,
     PasteMode,
-    find_active_paste_destination,
     find_paste_destinations,
     paste_keys_disabled_reason,
     skipped_layers_reasons,
 )
 from app.editor.poses.pasting_keys import paste_keys, pasteable_keys
+from app.editor.poses.pasting_targets import fit_copied_keys
 from app.editor.poses.pasting_tracks import paste_track, pasteable_tracks
 from app.editor.project import LastFlip, Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
-from app.solving import Rig, fit_shown_pose, flip_poses, flip_targets
+from app.solving import Rig, fit_shown_pose, flip_poses
 from app.texts import _, ngettext
 
 LABELS: Mapping[PasteMode, str] = {
@@ -40,27 +41,21 @@ LABELS: Mapping[PasteMode, str] = {
 PASTING = JobKind(_("Pasting"), _("The poses could not be pasted"), "hand")
 FLIPPING = JobKind(_("Flipping"), _("The pose could not be flipped"), "hand")
 NO_PLACE = _("The copied keys fit no channel here. Paste them as they are.")
+# By the way of pasting: onto another layer than the active one, and onto several layers.
+PASTE_TEXTS: Mapping[PasteMode, tuple[str, str]] = {
+    "as it is": (_("Paste onto {layer}"), _("Paste onto {count} layers")),
+    "flipped": (_("Paste flipped onto {layer}"), _("Paste flipped onto {count} layers")),
+    "swapped": (_("Paste swapped onto {layer}"), _("Paste swapped onto {count} layers")),
+}
 NOT_PASTED = _("The pose was not pasted: a layer, its shape or its handles changed. Paste again.")
 
 
-def paste_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
-    """Return why nothing copied can be pasted, as a sentence; empty if it can."""
+def paste_disabled_reason(session: Session, project: Project, way: PasteMode) -> str | None:
+    """Return why nothing copied can be pasted, as a sentence; None if it can."""
     if pasteable_tracks(session, project, way) or pasteable_keys(session, project, way):
-        return ""
+        return None
     reason = paste_keys_disabled_reason(session, project, way)
-    return reason or ("" if session.clipboard.poses else NO_PLACE)
-
-
-def paste_on_selected_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
-    """Return why nothing can be pasted on the selected handles; empty if it can."""
-    landing = find_active_paste_destination(session, project, way)
-    if landing is None:
-        return paste_keys_disabled_reason(session, project, way) or _(
-            "Select a copied layer first."
-        )
-    if not project.selected_handles:
-        return _("Select the handles to paste on first.")
-    return landing.disabled_reason
+    return reason or (None if session.clipboard.poses else NO_PLACE)
 
 
 @with_project
@@ -68,6 +63,51 @@ def paste_copied(session: Session, project: Project, way: PasteMode = "as it is"
     """Paste the copied keys at the present frame; the first key is there."""
     frame = pose_insertion.stop_and_get_frame(session, project)
     pending_changes.run_when_idle(session, do(_paste, frame, way), LABELS.get(way, _("Paste")))
+
+
+def _paste_text(session: Session, project: Project, way: PasteMode) -> str:
+    """Name the layers that receive the paste, unless it is only the active layer."""
+    onto = [each.layer for each in find_paste_destinations(session, project, way)]
+    onto_layer, onto_layers = PASTE_TEXTS[way]
+    if len(onto) > 1:
+        return onto_layers.format(count=len(onto))
+    return "".join(
+        onto_layer.format(layer=layer.name) for layer in onto if layer.id != project.active
+    )
+
+
+def _paste_action(way: PasteMode, name: str, label: str, keys: str, **more: Any) -> ActionSpec:
+    return ActionSpec(
+        do(paste_copied, way),
+        name,
+        label,
+        keys,
+        detail=partial(_paste_text, way=way),
+        why_disabled=partial(paste_disabled_reason, way=way),
+        **more,
+    )
+
+
+PASTE = _paste_action("as it is", "paste", _("Paste"), "Ctrl+V")
+PASTE_FLIPPED = _paste_action(
+    "flipped",
+    "paste flipped",
+    _("Paste flipped"),
+    "Ctrl+Shift+V",
+    icon="PASTE",
+    hint=_("Paste into a key at this frame, mirrored: left and right change places"),
+)
+PASTE_SWAPPED = _paste_action(
+    "swapped",
+    "paste swapped",
+    _("Paste swapped"),
+    "Ctrl+Shift+X",
+    icon="RIGHT_LEFT",
+    hint=_(
+        "Paste into a key at this frame: near and far, or left and right, change places. "
+        "Nothing is mirrored."
+    ),
+)
 
 
 @with_project
@@ -138,7 +178,7 @@ def paste_poses(
         Runs after the keys are inserted.
     """
     gesture, label = gesture or object(), label or LABELS.get(way)
-    keys = {each.layer.id: _fitted(project, each) for each in found if each.is_direct(way)}
+    keys = {each.layer.id: fit_copied_keys(project, each) for each in found if each.is_direct(way)}
     works = {
         each.layer.id: _solving(project, each, way, by)
         for each in found
@@ -178,42 +218,12 @@ def set_mirror_names(session: Session, text: str) -> None:
     editing.edit_document(session, scene_commands.set_mirror_names(parse_pairs(text)))
 
 
-@with_project
-def paste_on_selected(session: Session, project: Project, way: PasteMode = "as it is") -> None:
-    """Move the selected handles to the copied places of themselves or of their partners."""
-    if not paste_on_selected_disabled_reason(session, project, way):
-        landing = find_active_paste_destination(session, project, way)
-        if landing is not None:
-            targets = pasted_targets(project, landing, way)
-            set_targets(session, {i: targets[i] for i in project.selected_handles if i in targets})
-
-
-def pasted_targets(
-    project: Project, landing: PasteDestination, way: PasteMode
-) -> Mapping[int, Target]:
-    """Return the targets of a layer's handles from the first copied key, by id."""
-    if landing.is_own:
-        pose, layer = _fitted(project, landing)[0].pose, landing.layer
-        if way == "flipped":
-            return flip_targets(layer, pose, layer.axis, project.document.pairs)
-        if landing.is_direct(way):
-            return pose.targets
-    return landing.pose_transfer(way).transfer_targets(landing.layer, landing.copied.keys[0].pose)
-
-
 def _is_as_it_was(project: Project, landing: PasteDestination) -> bool:
     """Return whether a layer still has the shape and the handles that poses were solved for."""
     was = landing.layer
     return any(
         each.id == was.id and each.domain is was.domain and each.handles == was.handles
         for each in project.document.layers
-    )
-
-
-def _fitted(project: Project, landing: PasteDestination) -> list[Keyframe]:
-    copied = landing.copied
-    return pose_insertion.fit_keys_to_layer(
-        project, landing.layer.id, copied.keys, copied.layer.bounds
     )
 
 
@@ -224,7 +234,7 @@ def _solving(
     layer, runtime = landing.layer, project.layer_runtimes[landing.layer.id]
     earlier, sibling = runtime.rig, runtime.store.sampler
     if landing.is_own and way == "flipped":
-        keys, pairs = _fitted(project, landing), project.document.pairs
+        keys, pairs = fit_copied_keys(project, landing), project.document.pairs
 
         def flip() -> Sequence[Keyframe]:
             rig = Rig.of(layer, earlier)
@@ -256,7 +266,7 @@ def _note_flip(project: Project, landing: PasteDestination, flipped: Sequence[Ke
     layer = landing.layer.id
     project.last_flip = LastFlip(
         layer=layer,
-        keys=tuple(_fitted(project, landing)),
+        keys=tuple(fit_copied_keys(project, landing)),
         frames=project.selected_keys.get(pose_channel(layer), frozenset()),
         poses=tuple(key.pose for key in flipped),
     )

@@ -5,6 +5,7 @@ from typing import Self
 
 from app.document import Layer
 from app.editor.actions import playback
+from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import move_pose, release_drag
 from app.editor.layering.layer_selection import set_active_layer
@@ -53,6 +54,14 @@ class MoveTool(PoseTool):
         return (Hint(_("type a number of pixels")), Hint(_("X or Y to lock to an axis")))
 
 
+@named_action(
+    "move",
+    _("Move whole drawing"),
+    "V",
+    icon="UP_DOWN_LEFT_RIGHT",
+    hint=_("Move the whole layer in this frame, by drag or arrow keys"),
+    active=lambda session: session.moves,
+)
 @with_project
 def toggle_move_tool(session: Session, project: Project) -> None:
     """Select the move tool, or the pose tool if the move tool is selected."""
@@ -63,6 +72,14 @@ def toggle_move_tool(session: Session, project: Project) -> None:
         session.cutting = session.material = project.motion_setup = None
 
 
+@named_action(
+    "pose",
+    _("Back to posing"),
+    "Escape",
+    why_disabled=unless(
+        lambda session, _: not session.is_posing, _("You are posing. No other tool is active.")
+    ),
+)
 @with_project
 def return_to_posing(session: Session, project: Project) -> None:
     """Select the pose tool; close a motion draft."""

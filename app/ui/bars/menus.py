@@ -7,8 +7,9 @@ from imgui_bundle import imgui
 from app.document import PRESETS
 from app.editor import Action, Session, do
 from app.editor.actions import viewing
+from app.editor.actions.action_spec import ActionSpec
 from app.editor.actions.project_files import files
-from app.editor.actions.timing import keys
+from app.editor.actions.timing import cycles, keys
 from app.errors import display_name
 from app.storage import CHECKER
 from app.texts import _
@@ -16,6 +17,7 @@ from app.ui.bars.methods import draw_method_menu
 from app.ui.panel import Panel, is_in_front
 from app.ui.shortcuts.table import MENUS
 from app.ui.shortcuts.widgets import draw_action_item
+from app.ui.shortcuts.window_actions import reset_layout
 from app.ui.style.theme import Look
 from app.ui.style.widgets import colour_field, draw_tooltip
 
@@ -49,14 +51,15 @@ def draw_main_menu(
 ) -> list[Action]:
     """Draw the entries of a menu from the table of actions; `panels` are the window's."""
     actions: list[Action] = []
-    for name, binding in MENUS[title].items():
-        if binding.has_separator:
+    for number, group in enumerate(MENUS[title]):
+        if number:
             imgui.separator()
-        actions += draw_action_item(session, name)
-        if name in BELOW:
-            actions += BELOW[name](session)
-        if name == "reset layout":
-            actions += _tabs(session, panels)
+        for spec in group:
+            actions += draw_action_item(session, spec)
+            if spec in BELOW:
+                actions += BELOW[spec](session)
+            if spec is reset_layout:
+                actions += _tabs(session, panels)
     return actions
 
 
@@ -143,11 +146,11 @@ def _recent(session: Session) -> list[Action]:
     return actions
 
 
-# Submenus, by the name of the entry above each.
-BELOW: dict[str, Callable[[Session], list[Action]]] = {
-    "open": _recent,
-    "motion paths": _path_reaches,
-    "smaller": _backdrops,
-    "ease not": _new_keys,
-    "repeat no more": _methods,
+# Submenus, by the entry above each.
+BELOW: dict[ActionSpec, Callable[[Session], list[Action]]] = {
+    files.ask_file_to_open: _recent,
+    viewing.MOTION_PATHS: _path_reaches,
+    viewing.shrink_interface: _backdrops,
+    keys.EASE_KEYS[-1]: _new_keys,
+    cycles.end_cycle: _methods,
 }

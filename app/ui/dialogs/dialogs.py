@@ -1,7 +1,7 @@
 """The open dialog: a question, the sheet of shortcuts, or a file dialog."""
 
 from collections.abc import Mapping
-from itertools import combinations_with_replacement
+from itertools import chain, combinations_with_replacement
 
 from imgui_bundle import ImVec2, imgui
 
@@ -17,7 +17,7 @@ from app.editor import (
     do,
     error_reports,
 )
-from app.editor.actions.viewing import (
+from app.editor.actions.dialog_actions import (
     answer_dialog,
     browse_files,
     close_dialog,
@@ -29,6 +29,7 @@ from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
 from app.ui.dialogs.problem import draw_problem_dialog
 from app.ui.dialogs.recovery import draw_recovery_dialog
+from app.ui.shortcuts.keys import shown_keys
 from app.ui.shortcuts.pointer_help import POINTER_HELP
 from app.ui.shortcuts.table import MENUS
 from app.ui.style.theme import Look
@@ -169,12 +170,8 @@ def _question(question: Question, look: Look) -> list[Action]:
 
 def _shortcuts(look: Look) -> None:
     rows: dict[str, list[tuple[str, str]]] = {
-        menu: [
-            (binding.label, binding.shown_keys)
-            for binding in bindings.values()
-            if binding.shown_keys
-        ]
-        for menu, bindings in MENUS.items()
+        menu: [(spec.label, shown_keys(spec)) for spec in chain(*groups) if shown_keys(spec)]
+        for menu, groups in MENUS.items()
     }
     rows[N_("Pointer")] = [(gesture.effect, gesture.gesture) for gesture in POINTER_HELP]
     style = imgui.get_style()

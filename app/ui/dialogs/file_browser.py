@@ -8,7 +8,7 @@ from typing import Any
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, FileDialog, Session, do
-from app.editor.actions.viewing import browse_files, choose_file, close_dialog
+from app.editor.actions.dialog_actions import browse_files, choose_file, close_dialog
 from app.errors import display_name
 from app.render import Thumbnail
 from app.storage import home_folder

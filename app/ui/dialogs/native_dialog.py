@@ -8,7 +8,12 @@ from typing import Final
 from imgui_bundle import portable_file_dialogs
 
 from app.editor import Action, FileDialog, Question, do
-from app.editor.actions.viewing import choose_file, close_dialog, show_dialog, use_own_file_browser
+from app.editor.actions.dialog_actions import (
+    choose_file,
+    close_dialog,
+    show_dialog,
+    use_own_file_browser,
+)
 from app.errors import display_name
 from app.export import choose_frame_folder
 from app.texts import _

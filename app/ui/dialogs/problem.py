@@ -3,7 +3,7 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, ProblemReport, do, error_reports
-from app.editor.actions.viewing import close_dialog
+from app.editor.actions.dialog_actions import close_dialog
 from app.texts import _
 from app.ui.style.theme import Look
 from app.ui.style.widgets import main_button

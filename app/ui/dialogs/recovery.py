@@ -3,8 +3,8 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, RecoverableFile, RecoveryDialog, do, error_reports
+from app.editor.actions.dialog_actions import answer_dialog, close_dialog
 from app.editor.actions.project_files import recovery
-from app.editor.actions.viewing import answer_dialog, close_dialog
 from app.errors import display_name
 from app.texts import _
 from app.ui.dialogs.folder_listing import Entry

@@ -17,7 +17,7 @@ from app.texts import _, message_of, ngettext
 from app.ui.panels.export_settings.format_options import draw_format_options
 from app.ui.panels.export_settings.preview import draw_export_preview
 from app.ui.panels.export_settings.sizes import LARGEST, draw_size_fields
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import shown_keys
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
     FILL,
@@ -286,12 +286,12 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  {_('Export')}###start", FILL):
         actions.append(do(export_settings.repeat_export))
     look.note_place("start export")
-    draw_tooltip(_("Export now"), BINDINGS["export again"].shown_keys)
+    draw_tooltip(_("Export now"), shown_keys(export_settings.repeat_export))
     if EXPORT_FORMATS[project.document.export.format].is_still:
         text, hint = (
             f"{icons.ICON_FA_COPY}  {_('Copy')}###copy",
             _("Copy the picture to the clipboard"),
         )
-        if text_button(text, FILL, hint, BINDINGS["copy picture"].shown_keys):
+        if text_button(text, FILL, hint, shown_keys(exporting.copy_picture)):
             actions.append(do(exporting.copy_picture))
     return actions

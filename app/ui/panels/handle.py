@@ -16,16 +16,22 @@ from app.document import (
 )
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, viewing
+from app.editor.actions.layer_setup import handle_editing
+from app.editor.actions.posing import handles, pose_drag
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import free_rotation, set_targets
+from app.editor.actions.timing import tracks
 from app.texts import _, ngettext
 from app.ui.panels.handle_settings.anchor import draw_anchor
 from app.ui.panels.handle_settings.auto_pin import draw_auto_pin
 from app.ui.panels.handle_settings.depth import draw_depth_settings
 from app.ui.panels.handle_settings.spring import draw_spring
 from app.ui.panels.handle_settings.track import draw_track
-from app.ui.shortcuts.table import BINDINGS
-from app.ui.shortcuts.widgets import draw_action_button, draw_action_text_button
+from app.ui.shortcuts.widgets import (
+    draw_action_button,
+    draw_action_main_button,
+    draw_action_text_button,
+)
 from app.ui.style.sliders import Scale, number_field, slider
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
@@ -35,7 +41,6 @@ from app.ui.style.widgets import (
     heading,
     icon_button,
     label,
-    main_button,
     option_buttons,
     shorten_text,
     small_text,
@@ -57,10 +62,7 @@ def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Ac
         small_text(
             look, _("There are no handles yet. Click on the drawing to add one, then drag it, or:")
         )
-        suggest = BINDINGS["suggest handles"]
-        is_pressed = main_button(look, f"{suggest.icon}  {suggest.label}###{suggest.label}", FILL)
-        draw_tooltip(suggest.hint)
-        return [suggest.action] if is_pressed else []
+        return draw_action_main_button(session, look, handles.suggest_handles)
     actions = _heading_with_delete(session, look, project)
     actions += _list(look, project)
     chosen = [handle for handle in layer.handles if handle.id in project.selected_handles]
@@ -85,7 +87,7 @@ def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Ac
 def _heading_with_delete(session: Session, look: Look, project: Project) -> list[Action]:
     heading(look, _("Handles"), framed=True)
     align_right(2 * 1.15 * imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
-    actions = draw_action_button(session, look, "suggest handles")
+    actions = draw_action_button(session, look, handles.suggest_handles)
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
     if icon_button(
         look,
@@ -195,13 +197,17 @@ def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Ac
     if weighed is not None:
         weigh, value = handle_commands.set_handle_weight, float(f"{weighed.value:.3g}")
         actions.append(do(editing.edit_layer, weigh, identities, value))
-    names = ["pin here", "lock", "group" if len(chosen) > 1 else "mirror", "mirrored"]
+    third = handle_editing.group_handles if len(chosen) > 1 else handles.mirror_handles
     if any(handle.group for handle in chosen):
-        names[2] = "ungroup"
-    for pair in (names[:2], names[2:]):
-        for name, width in zip(pair, split_line(2), strict=True):
-            actions += draw_action_text_button(session, name, width)
-    return actions + draw_action_text_button(session, "key handle", FILL)
+        third = handle_editing.ungroup_handles
+    pairs = (
+        (pose_drag.pin_selected_handles, handle_editing.toggle_handles_locked),
+        (third, handle_editing.select_mirrored),
+    )
+    for pair in pairs:
+        for spec, width in zip(pair, split_line(2), strict=True):
+            actions += draw_action_text_button(session, spec, width)
+    return actions + draw_action_text_button(session, tracks.key_selected_handles, FILL)
 
 
 def _draw_target(look: Look, project: Project, handle: Handle) -> list[Action]:

@@ -40,7 +40,7 @@ def draw_poses_panel(
         return []
     heading(look, _("Poses"), framed=True)
     align_right(1.15 * imgui.get_frame_height())
-    actions = draw_action_button(session, look, "keep pose")
+    actions = draw_action_button(session, look, library.save_pose_to_library)
     offers = library.list_library_poses(project)
     if offers:
         actions += _libraries(look, project, offers, pictures)
@@ -193,8 +193,8 @@ def _menu(kept: LibraryPose, owner: int, *, is_own: bool) -> list[Action]:
 def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     layer, actions = project.layer, list[Action]()
     widths = split_line(2)
-    for name in ("paste flipped", "paste swapped"):
-        actions += draw_action_text_button(session, name, next(widths))
+    for spec in (pasting.PASTE_FLIPPED, pasting.PASTE_SWAPPED):
+        actions += draw_action_text_button(session, spec, next(widths))
     label(look, _("Axis"))
     if imgui.checkbox("##axis", session.overlays.mirror)[0]:
         actions.append(do(viewing.toggle_overlay, "mirror"))

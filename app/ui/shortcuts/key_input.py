@@ -3,22 +3,20 @@
 from imgui_bundle import imgui
 
 from app.editor import Action, Session, do
-from app.editor.actions import playback, viewing
+from app.editor.actions import dialog_actions, playback, viewing
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.tools import move_tool
-from app.ui.shortcuts.keys import CTRL
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import CTRL, chords_of
+from app.ui.shortcuts.table import ACTIONS, ENDED_BY_ESC
 
 Key = imgui.Key
 MODIFIERS = int(imgui.Key.mod_mask_)
-# All keys of shortcuts, without modifiers.
-_KEYS = {Key(chord & ~MODIFIERS) for binding in BINDINGS.values() for chord in binding.chords()} | {
-    Key.left_arrow,
-    Key.right_arrow,
-    Key.up_arrow,
-    Key.down_arrow,
-}
 ARROWS = {Key.left_arrow: -1, Key.right_arrow: 1, Key.up_arrow: 1j, Key.down_arrow: -1j}
+# All keys of shortcuts, without modifiers.
+_KEYS = {
+    *(Key(chord & ~MODIFIERS) for spec in ACTIONS.values() for chord in chords_of(spec)),
+    *ARROWS,
+}
 
 
 def collect_key_actions(session: Session) -> list[Action]:
@@ -30,28 +28,36 @@ def collect_key_actions(session: Session) -> list[Action]:
     # First, because copy and select depend on the focus.
     actions = _follow_focus(session)
     if [key for key in _KEYS if imgui.is_key_down(key)]:
-        actions += _press_shortcuts(session) + _nudges(session)
+        # Arrow keys that move something do not also go to a key.
+        actions += _nudges(session) or _press_shortcuts(session)
     return actions + _space(session)
 
 
 def _press_shortcuts(session: Session) -> list[Action]:
-    """Return the actions of shortcuts that were pressed, or why they are disabled."""
-    actions: list[Action] = []
-    for binding in BINDINGS.values():
-        # Typed characters belong to the active drag.
-        keys = [
-            key for key in binding.chords() if session.active_tool is None or not _is_typed(key)
-        ]
+    """Return the actions of pressed shortcuts: of each key the first that is possible.
+
+    If none is possible, a notice says why. Esc says nothing, since it belongs to many actions.
+    """
+    project, pressed, reasons = session.project, dict[int, Action](), dict[int, str]()
+    is_dragging = session.active_tool is not None or (
+        project is not None and project.timeline.gesture is not None
+    )
+    for spec in dict.fromkeys((*ENDED_BY_ESC, *ACTIONS.values())):
         flags = imgui.InputFlags_.route_always
-        if binding.repeats_while_held:
+        if spec.repeats_while_held:
             flags |= imgui.InputFlags_.repeat
-        if not any(imgui.shortcut(chord, flags) for chord in keys):
-            continue
-        if binding.is_possible(session):
-            actions.append(binding.action)
-        elif reason := binding.disabled_reason(session):
-            actions.append(do(viewing.show_notice, reason))
-    return actions
+        # Typed characters belong to the drag.
+        keys = [key for key in chords_of(spec) if not (is_dragging and _is_typed(key))]
+        for key in keys:
+            if key in pressed or not imgui.shortcut(key, flags):
+                continue
+            reason = spec.disabled_reason(session)
+            if reason is None:
+                pressed[key] = spec.action
+            elif key != Key.escape:
+                reasons[key] = reason
+    answers = [do(dialog_actions.show_notice, reason) for reason in reasons.values()]
+    return [*pressed.values(), *answers]
 
 
 def _follow_focus(session: Session) -> list[Action]:

@@ -5,6 +5,7 @@ from functools import cache
 
 from imgui_bundle import imgui
 
+from app.editor.actions.action_spec import ActionSpec
 from app.texts import N_, _
 
 Key = imgui.Key
@@ -50,6 +51,16 @@ def format_chord(chord: int, *, is_mac: bool = IS_MAC) -> str:
     names = MAC_MODIFIERS if is_mac else MODIFIERS
     parts = [_(name) for modifier, name in names.items() if chord & modifier]
     return ("" if is_mac else "+").join([*parts, KEY_NAMES.get(key, key)])
+
+
+def chords_of(spec: ActionSpec, *, is_mac: bool = IS_MAC) -> tuple[int, ...]:
+    """Return the key chords of an action on this system, or on the given one."""
+    return parse_chords((is_mac and spec.mac_keys) or spec.keys)
+
+
+def shown_keys(spec: ActionSpec) -> str:
+    """Return the first key chord of an action, as menus show it."""
+    return format_chord(chords_of(spec)[0]) if spec.keys else spec.key_text
 
 
 @cache

@@ -1,54 +1,64 @@
-"""Menu entries and buttons of named actions."""
+"""Menu entries and buttons of named actions. A disabled one shows the reason in its tooltip."""
 
 from imgui_bundle import imgui, imgui_ctx
 
 from app.editor import Action, Session
-from app.ui.shortcuts.table import BINDINGS
-from app.ui.style.theme import Look
-from app.ui.style.widgets import draw_tooltip, icon_button, text_button
+from app.editor.actions.action_spec import ActionSpec
+from app.ui.shortcuts.keys import shown_keys
+from app.ui.style.theme import Look, icon_glyph
+from app.ui.style.widgets import FILL, draw_tooltip, icon_button, main_button, text_button
 
 
-def draw_action_item(session: Session, name: str) -> list[Action]:
-    binding = BINDINGS[name]
+def draw_action_item(session: Session, spec: ActionSpec) -> list[Action]:
+    reason = spec.disabled_reason(session)
     clicked, _ = imgui.menu_item(
-        binding.menu_title(session),
-        binding.shown_keys,
-        binding.is_active(session),
-        binding.is_possible(session),
+        spec.menu_title(session), shown_keys(spec), spec.is_active(session), reason is None
     )
-    reason = binding.disabled_reason(session)
-    if reason:
+    if reason is not None:
         draw_tooltip(reason)
-    return [binding.action] if clicked else []
+    return [spec.action] if clicked else []
 
 
-def draw_action_text_button(session: Session, name: str, width: float) -> list[Action]:
+def draw_action_text_button(session: Session, spec: ActionSpec, width: float) -> list[Action]:
     """Draw the button of a named action, with its icon and its label."""
-    binding = BINDINGS[name]
-    is_active = binding.is_active(session)
+    is_active, reason = spec.is_active(session), spec.disabled_reason(session)
     slot = imgui.Col_.button_active if is_active else imgui.Col_.button
     with imgui_ctx.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(slot)):
         is_pressed = text_button(
-            f"{binding.icon}  {binding.label}###{name}",
+            f"{icon_glyph(spec.icon)}  {spec.label}###{spec.name}",
             width,
-            binding.disabled_reason(session) or binding.hint or binding.label,
-            binding.shown_keys,
-            enabled=binding.is_possible(session),
+            reason or spec.hint or spec.label,
+            shown_keys(spec),
+            enabled=reason is None,
         )
-    return [binding.action] if is_pressed else []
+    return [spec.action] if is_pressed else []
 
 
-def draw_action_button(session: Session, look: Look, name: str, icon: str = "") -> list[Action]:
-    """Draw the square button of a named action, with its icon or the given one."""
-    binding = BINDINGS[name]
+def draw_action_main_button(session: Session, look: Look, spec: ActionSpec) -> list[Action]:
+    """Draw the main button of a panel for a named action, with its icon and its label."""
+    reason = spec.disabled_reason(session)
+    text = f"{icon_glyph(spec.icon)}  {spec.label}###{spec.label}"
+    is_pressed = main_button(look, text, FILL, enabled=reason is None)
+    draw_tooltip(reason or spec.hint, shown_keys(spec))
+    return [spec.action] if is_pressed else []
+
+
+def draw_action_button(
+    session: Session, look: Look, spec: ActionSpec, icon: str = "", reason: str | None = None
+) -> list[Action]:
+    """Draw the square button of a named action, with its icon or the given one.
+
+    The panel may give another reason why it is disabled.
+    """
+    reason = spec.disabled_reason(session) or reason
     is_pressed = icon_button(
         look,
-        icon or binding.icon,
-        binding.label,
-        binding.hint or binding.label,
-        keys=binding.shown_keys,
-        active=binding.is_active(session),
-        enabled=binding.is_possible(session),
+        icon_glyph(icon or spec.icon),
+        spec.label,
+        reason or spec.hint or spec.label,
+        keys=shown_keys(spec),
+        active=spec.is_active(session),
+        enabled=reason is None,
     )
-    look.note_place(name)
-    return [binding.action] if is_pressed else []
+    look.note_place(spec.name)
+    return [spec.action] if is_pressed else []

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
+from imgui_bundle import ImVec2, ImVec4, hello_imgui, icons_fontawesome_6 as icons, imgui
 
 FONT_SIZE = 15.0  # pixels at scale 1
 SMALL, LARGE, TITLE = 0.87, 1.2, 2.1  # font sizes, relative to the text's
@@ -22,6 +22,12 @@ def with_alpha(colour: ImVec4, alpha: float) -> ImVec4:
 def colour_u32(colour: ImVec4, alpha: float = 1.0) -> int:
     """Return a colour as draw lists need it. `alpha` multiplies its opacity."""
     return imgui.color_convert_float4_to_u32(ImVec4(colour.x, colour.y, colour.z, colour.w * alpha))
+
+
+def icon_glyph(name: str) -> str:
+    """Return a Font Awesome icon by its name, such as "ANGLES_LEFT"."""
+    glyph: str = getattr(icons, f"ICON_FA_{name}")
+    return glyph
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -6,15 +6,16 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Project, Session, do
 from app.editor.actions import playback, viewing
-from app.editor.actions.timing import keys
+from app.editor.actions.timing import keys, timeline_drag
+from app.editor.actions.tracking import recording
 from app.editor.actions.tracking.recording import RECORDING_SPEEDS, set_recording_speed
 from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
 from app.texts import _
 from app.ui.bars.methods import draw_method_menu
 from app.ui.methods import VARIANTS
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import shown_keys
 from app.ui.shortcuts.widgets import draw_action_button
-from app.ui.style.theme import Look, colour_u32
+from app.ui.style.theme import Look, colour_u32, icon_glyph
 from app.ui.style.widgets import draw_tooltip, icon_button
 from app.ui.timeline.layout import format_seconds
 from app.ui.timeline.menus import draw_time_menu
@@ -22,9 +23,9 @@ from app.ui.timeline.menus import draw_time_menu
 GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em: between related items, inside a group, between groups
 FRAMES = 13.0  # em: width of the frame numbers
 SLOWEST, FASTEST = 1.0, 240.0  # range of a drag, in frames per second
-KEY_BUTTONS = (
-    ("previous key", icons.ICON_FA_ANGLES_LEFT),
-    ("next key", icons.ICON_FA_ANGLES_RIGHT),
+TRANSPORT = (
+    *(playback.go_to_start, playback.PREVIOUS_FRAME, playback.toggle_play),
+    *(playback.NEXT_FRAME, playback.go_to_end),
 )
 
 
@@ -56,13 +57,13 @@ def _gap(look: Look) -> None:
 def _transport(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     is_playing = project.playhead.since is not None
-    for name in ("start", "back", "play", "on", "end"):
-        icon = icons.ICON_FA_PAUSE if name == "play" and is_playing else ""
-        actions += draw_action_button(session, look, name, icon)
+    for spec in TRANSPORT:
+        icon = "PAUSE" if spec is playback.toggle_play and is_playing else ""
+        actions += draw_action_button(session, look, spec, icon)
         imgui.same_line(0, TIGHT * look.em)
-    actions += draw_action_button(session, look, "loop")
+    actions += draw_action_button(session, look, keys.toggle_loop)
     imgui.same_line(0, TIGHT * look.em)
-    actions += draw_action_button(session, look, "record")
+    actions += draw_action_button(session, look, recording.toggle_recording_armed)
     imgui.same_line(0, TIGHT * look.em)
     return actions + _recording_speed(session, look)
 
@@ -82,17 +83,14 @@ def _recording_speed(session: Session, look: Look) -> list[Action]:
 
 
 def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]:
-    actions: list[Action] = []
-    previous, following = KEY_BUTTONS
-    actions += _to_key(look, *previous)
+    actions = draw_action_button(session, look, playback.PREVIOUS_KEY)
     imgui.same_line(0, TIGHT * look.em)
     frame = playback.current_frame(session, project)
     if project.selected_track is None:
         frame = playback.edited_frame(session, project)
     is_free = project.unkeyed_pose is not None or not playback.is_frame_keyed(project, frame)
-    imgui.begin_disabled(not is_free)
-    actions += draw_action_button(session, look, "insert key")
-    imgui.end_disabled()
+    reason = None if is_free else _("This frame has a key already.")
+    actions += draw_action_button(session, look, keys.insert_key_in_row, reason=reason)
     if project.unkeyed_pose is not None:
         high = imgui.get_item_rect_max()
         imgui.get_window_draw_list().add_circle_filled(
@@ -101,20 +99,13 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
             colour_u32(look.palette.warning),
         )
     imgui.same_line(0, TIGHT * look.em)
-    actions += _to_key(look, *following)
+    actions += draw_action_button(session, look, playback.NEXT_KEY)
     imgui.same_line(0, TIGHT * look.em)
-    actions += draw_action_button(session, look, "auto-key")
+    actions += draw_action_button(session, look, viewing.toggle_auto_key)
     imgui.same_line(0, TIGHT * look.em)
     if icon_button(look, icons.ICON_FA_ELLIPSIS, "more", _("Reverse, scale time, preview range")):
         imgui.open_popup("menu of time")
     return actions + draw_time_menu(session, look, project)
-
-
-def _to_key(look: Look, name: str, icon: str) -> list[Action]:
-    binding = BINDINGS[name]
-    keys_in_words = binding.shown_keys
-    pressed = icon_button(look, icon, binding.label, binding.label, keys=keys_in_words)
-    return [binding.action] if pressed else []
 
 
 def _frame(session: Session, look: Look, project: Project) -> list[Action]:
@@ -150,7 +141,7 @@ def _right(session: Session, look: Look, project: Project) -> list[Action]:
         (square, lambda: _onion_skin(session, look)),
         (4.4 * em, lambda: _speed(project)),
         (5.2 * em, lambda: _fps(project)),
-        (square, lambda: draw_action_button(session, look, "fit time")),
+        (square, lambda: draw_action_button(session, look, timeline_drag.fit_timeline)),
     ]
     imgui.same_line(0, WIDE * em)
     begin = imgui.get_cursor_pos_x()
@@ -197,16 +188,16 @@ def _speed(project: Project) -> list[Action]:
 def _onion_skin(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
     overlays, preferences = session.overlays, session.settings.preferences
-    binding = BINDINGS["onion skin"]
+    spec = viewing.ONION_SKIN
     hint = _("Onion skin: the poses shown before and after this frame")
-    if icon_button(look, binding.icon, "onion skin", hint, active=overlays.onion):
+    if icon_button(look, icon_glyph(spec.icon), "onion skin", hint, active=overlays.onion):
         imgui.open_popup("menu of onion skin")
     if not imgui.begin_popup("menu of onion skin"):
         return actions
-    if imgui.checkbox(binding.label, overlays.onion)[0]:
-        actions.append(binding.action)
+    if imgui.checkbox(spec.label, overlays.onion)[0]:
+        actions.append(spec.action)
     imgui.same_line()
-    imgui.text_disabled(binding.shown_keys)
+    imgui.text_disabled(shown_keys(spec))
     values = [preferences.ghosts_before, preferences.ghosts_after, preferences.ghost_step]
     before = list(values)
     sliders = (

@@ -20,9 +20,9 @@ from app.document import (
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import cycles, keys, tracks
-from app.editor.poses import copying
+from app.editor.poses import copying, pasting
 from app.texts import _, ngettext
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import shown_keys
 from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.style.theme import Look
 from app.ui.style.widgets import draw_tooltip, shorten_text
@@ -48,12 +48,12 @@ def draw_key_menu(bands: TimelineLayout, channel: Channel[Any], key: BaseKey) ->
     project = bands.project
     taken = project.keys_with(channel, key.frame)
     count = sum(map(len, taken.values()))
-    delete = BINDINGS["delete"]
+    delete = editing.delete_selection
     text = ngettext("Delete", "Delete {count} keys", count).format(count=count)
-    if imgui.menu_item_simple(f"{text}###Delete", delete.shown_keys):
+    if imgui.menu_item_simple(f"{text}###Delete", shown_keys(delete)):
         actions.append(delete.action)
     text = ngettext("Copy", "Copy {count} keys", count).format(count=count)
-    if imgui.menu_item_simple(f"{text}###Copy", BINDINGS["copy"].shown_keys):
+    if imgui.menu_item_simple(f"{text}###Copy", shown_keys(copying.copy_pose_or_keys)):
         actions.append(do(copying.copy_keys))
     seen = display_frame(project.document, channel, key.frame)
     actions += _paste_items(bands.session, seen)
@@ -93,8 +93,8 @@ def _paste_items(session: Session, frame: int) -> list[Action]:
     """Draw the paste entries for a frame. A paste moves the playhead there."""
     pasted = [
         action
-        for name in ("paste", "paste swapped", "paste flipped")
-        for action in draw_action_item(session, name)
+        for spec in (pasting.PASTE, pasting.PASTE_SWAPPED, pasting.PASTE_FLIPPED)
+        for action in draw_action_item(session, spec)
     ]
     return [do(playback.scrub, frame), *pasted] if pasted else []
 
@@ -162,7 +162,7 @@ def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
 
 def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    actions += draw_action_item(session, "repeat")
+    actions += draw_action_item(session, cycles.create_cycle)
     count, chosen = len(frames_in(project.document, project.channel)), project.selected_key_count
     # Scaling changes the whole scene, reversing only the active layer.
     reverse, scale = _("Reverse all keys"), _("Scale time of all keys")
@@ -199,6 +199,10 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     ):
         actions.append(do(keys.match_loop_ends))
     imgui.separator()
-    for name in ("preview start", "preview end", "preview none"):
-        actions += draw_action_item(session, name)
+    for spec in (
+        keys.start_preview_at_playhead,
+        keys.end_preview_at_playhead,
+        keys.clear_preview_range,
+    ):
+        actions += draw_action_item(session, spec)
     return actions

@@ -6,19 +6,20 @@ from typing import NamedTuple
 import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 
-from app.document import (
-    WEIGHT_PRESETS,
-    Handle,
-    handle_commands,
-    value_at,
-)
+from app.document import WEIGHT_PRESETS, Handle, handle_commands, value_at
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import handle_editing
-from app.editor.actions.posing.handles import remove_handles, toggle_anchor_at_handle
-from app.editor.actions.posing.pose_drag import free_rotation
+from app.editor.actions.posing.handles import (
+    remove_handles,
+    suggest_handles,
+    toggle_anchor_at_handle,
+)
+from app.editor.actions.posing.pose_drag import free_rotation, pin_selected_handles
+from app.editor.actions.timing import keys, tracks
 from app.editor.layering.layer_selection import reset_tree_rows
-from app.editor.tools import tool_pointer
+from app.editor.poses import copying, pasting
+from app.editor.tools import move_tool, tool_pointer
 from app.editor.tools.tool import PointerHit
 from app.texts import _
 from app.ui.panel import is_in_front
@@ -52,12 +53,12 @@ ZOOM_STEP = 1.15  # per notch of the wheel
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
 LEFT_OR_RIGHT = imgui.ButtonFlags_.mouse_button_left | imgui.ButtonFlags_.mouse_button_right
 ANY_BUTTON = LEFT_OR_RIGHT | imgui.ButtonFlags_.mouse_button_middle
-# Names in the table of actions. A separator splits two groups.
+# The menu of the canvas. A separator splits two groups.
 CANVAS = (
-    ("insert key", "copy", "paste", "paste flipped"),
-    ("suggest handles", "select all", "move"),
-    ("fit", "fit motion", "actual size"),
-    ("handles", "outline", "onion skin"),
+    (keys.insert_key_in_row, copying.copy_pose_or_keys, pasting.PASTE, pasting.PASTE_FLIPPED),
+    (suggest_handles, editing.select_all, move_tool.toggle_move_tool),
+    (viewing.zoom_to_pose, viewing.zoom_to_motion, viewing.zoom_to_actual_size),
+    (viewing.HANDLES, viewing.OUTLINE, viewing.ONION_SKIN),
 )
 DEPTHS = {_("In front"): 1.0, _("Normal order"): 0.0, _("Behind"): -1.0}
 
@@ -228,11 +229,11 @@ def _canvas_menu(session: Session, *, is_pointed: bool) -> list[Action]:
     actions: list[Action] = []
     if not imgui.begin_popup("menu of the canvas"):
         return actions
-    for number, names in enumerate(CANVAS):
+    for number, group in enumerate(CANVAS):
         if number:
             imgui.separator()
-        for name in names:
-            actions += draw_action_item(session, name)
+        for spec in group:
+            actions += draw_action_item(session, spec)
     imgui.end_popup()
     return actions
 
@@ -248,8 +249,12 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
     if item(_("Delete"), icons.ICON_FA_TRASH, format_modified(ALT, _("click"))):
         actions.append(do(remove_handles, chosen))
-    actions += draw_action_item(session, "pin here") + draw_action_item(session, "lock")
-    actions += draw_action_item(session, "key handle")
+    for spec in (
+        pin_selected_handles,
+        handle_editing.toggle_handles_locked,
+        tracks.key_selected_handles,
+    ):
+        actions += draw_action_item(session, spec)
     actions += _hold(handle, chosen) + _depth(session, screen, handle)
     imgui.separator()
     is_anchor = handle.position == layer.anchor

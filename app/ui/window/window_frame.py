@@ -16,9 +16,9 @@ from app.editor import (
     pending_changes,
 )
 from app.editor.actions import editing, frame_update, playback, tutorials, viewing
+from app.editor.actions.dialog_actions import close_dialog, dismiss_toast
 from app.editor.actions.project_files import autosaving, export_settings, saving
 from app.editor.actions.timing import timeline_drag
-from app.editor.actions.viewing import close_dialog, dismiss_toast
 from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail

@@ -12,7 +12,7 @@ from app.editor.actions.project_files import exporting, saving
 from app.editor.parts.dialogs import Question
 from app.editor.poses import copying
 from app.storage import load_project
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.table import ACTIONS
 
 # Which edit the document at once, by a step of their own beside the drag's.
 EDITS = (
@@ -27,7 +27,7 @@ ALONE = (
     *("delete", "suggest handles", "pin here", "key handle", "mirror"),
     *("start", "play", "insert key", "first animation"),
 )
-VIEWS = [name for name in BINDINGS if name not in {*EDITS, *ALONE}]
+VIEWS = [name for name in ACTIONS if name not in {*EDITS, *ALONE}]
 
 # Whose own effect is that the key has another pose, or is gone: one step back it is there.
 INSTEAD = {"paste", "paste flipped", "paste on selected", "flip on selected", "undo"}
@@ -57,7 +57,7 @@ def ready(window, loose, tmp_path, monkeypatch):
 
 
 def call(window, name):
-    binding = BINDINGS[name]
+    binding = ACTIONS[name]
     window.act(binding.action.verb, *binding.action.arguments)
 
 

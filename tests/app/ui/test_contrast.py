@@ -12,11 +12,11 @@ from PIL import Image
 from app.document import Variant
 from app.document.keyframe import Target
 from app.editor import FileDialog, Question, do
-from app.editor.actions import editing, playback, viewing
+from app.editor.actions import dialog_actions, editing, playback, viewing
+from app.editor.actions.dialog_actions import close_dialog, show_dialog
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.posing.pose_drag import nudge_handles, set_targets
 from app.editor.actions.timing import timeline_drag
-from app.editor.actions.viewing import close_dialog, show_dialog
 from app.editor.layering.layer_list import (
     set_layer_opacity,
     toggle_layers_hidden,
@@ -202,7 +202,7 @@ def test_menus_messages_and_dialogs(window, tmp_path, check):
     window.run(open_menu)
     check("menu")
     window.run(lambda robot: robot.popup_close_all())
-    viewing.show_shortcuts(session)
+    dialog_actions.show_shortcuts(session)
     check("keys")
     close_dialog(session)
     answers = (("Yes", do(close_dialog)), ("No", do(close_dialog)))

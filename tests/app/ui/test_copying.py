@@ -11,7 +11,7 @@ from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.pictures import make_still
 from app.editor.poses.copying import KEYS_COPIED
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.table import ACTIONS
 
 CTRL = int(imgui.Key.mod_ctrl)
 ALL, COPY, PASTE = (CTRL | int(key) for key in (imgui.Key.a, imgui.Key.c, imgui.Key.v))
@@ -159,7 +159,7 @@ def test_the_menu_says_what_would_be_copied_and_selected(window, play):
         hand.robot.menu_action(imgui.test_engine.TestAction.open, "Edit")
         for name in ("Copy", "Select all"):
             assert hand.robot.item_exists(f"//$FOCUSED/###{name}")
-            binding = next(each for each in BINDINGS.values() if each.label == name)
+            binding = next(each for each in ACTIONS.values() if each.label == name)
             entries.append(binding.menu_title(window.session).split("###")[0])
         hand.robot.popup_close_all()
 

@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from app.editor.action import do
-from app.editor.actions import viewing
+from app.editor.actions import dialog_actions
 from app.editor.parts.dialogs import FileDialog
 from app.storage.assets import sample_images
 from app.ui.dialogs.browser_shortcuts import list_recent_shortcuts, list_standard_shortcuts
@@ -51,7 +51,7 @@ def show(window, folder, chosen):
             "writes": False,
             "chosen": lambda path: do(partial(note, chosen), path),
         }
-        window.act(viewing.show_dialog, FileDialog(**(settings | changes)))
+        window.act(dialog_actions.show_dialog, FileDialog(**(settings | changes)))
         window.frames(3)
 
     return open_browser

@@ -6,7 +6,7 @@ import pytest
 from imgui_bundle import imgui, implot
 
 from app.document.commands import scene_commands
-from app.editor.actions import editing, playback, viewing
+from app.editor.actions import dialog_actions, editing, playback
 from app.editor.parts.dialogs import Question
 from app.ui.viewport import viewport
 from app.ui.window import guard
@@ -141,7 +141,7 @@ def test_all_parts_can_fail_at_once_and_come_back(window, parts):
     assert len(seen) >= 10
     for name, part in parts.items():
         part.draw = draws[name]
-    window.act(viewing.close_dialog)
+    window.act(dialog_actions.close_dialog)
     window.frames(3)
     assert all(part.failure is None for name, part in parts.items() if "The menu " not in name)
 

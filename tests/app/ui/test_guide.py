@@ -8,7 +8,7 @@ from PIL import Image
 
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings
-from app.editor.actions import editing, playback, tutorials, viewing
+from app.editor.actions import dialog_actions, editing, playback, tutorials, viewing
 from app.editor.actions.layer_setup import stiffness_editing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
@@ -73,7 +73,7 @@ def led(window, pupil):
     window.frames(10)
     pupil.click("//Welcome/**/…or with your own drawing")
     dialog = window.session.dialogs.current
-    window.act(viewing.choose_file, dialog, sample_images() / "bar.png")
+    window.act(dialog_actions.choose_file, dialog, sample_images() / "bar.png")
     window.settle()
     assert pupil.step == "handle"
     return pupil

@@ -28,6 +28,7 @@ from app.document import (
     transform_at,
 )
 from app.editor.actions import editing, playback, viewing
+from app.editor.actions.layer_setup.layer_runtimes import update_layer_runtimes
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.actions.project_files import recovery
@@ -402,7 +403,7 @@ def nodding(window, swung):
     )
     wall = make_still_layer(wall)
     swung.history.do(layer_commands.add_layer(wall), gesture=None)
-    editing.update_layer_runtimes(swung)
+    update_layer_runtimes(swung)
     window.act(move_layer, wall.id, 0)
     window.act(viewing.set_onion_skin, 1, 1, 12)
     window.act(playback.seek, 12)

@@ -1,5 +1,7 @@
 """Questions answered by keys, menus closed by them, and keys in words."""
 
+from itertools import chain
+
 import pytest
 from bars import open_bar
 from harness import Harness
@@ -7,12 +9,12 @@ from imgui_bundle import imgui
 
 from app.editor import Question, do
 from app.editor.actions import viewing
-from app.editor.actions.viewing import show_dialog
+from app.editor.actions.dialog_actions import show_dialog
 from app.storage.assets import sample_images
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import keys as shortcut_keys
-from app.ui.shortcuts.keys import format_chord, format_modified, parse_chords
-from app.ui.shortcuts.table import BINDINGS, MENUS
+from app.ui.shortcuts.keys import chords_of, format_chord, format_modified, parse_chords
+from app.ui.shortcuts.table import ACTIONS, MENUS
 
 OPEN = imgui.test_engine.TestAction.open
 CTRL, SHIFT, ALT = (
@@ -161,8 +163,8 @@ def test_the_fonts_have_the_signs_of_all_keys(window):
     font = imgui.get_font()
     signs = {
         sign
-        for binding in BINDINGS.values()
-        for key in binding.chords()
+        for binding in ACTIONS.values()
+        for key in chords_of(binding)
         for sign in format_chord(key)
     }
     for sign in signs | set("⌥⇧⌘σ×−…“”–"):
@@ -176,16 +178,16 @@ def test_menus_are_made_from_the_table(window):
 
     def look(robot):
         robot.set_ref("##MainMenuBar")
-        for menu, bindings in MENUS.items():
+        for menu, groups in MENUS.items():
             robot.menu_click(menu)
-            for name, binding in bindings.items():
-                path = f"//$FOCUSED/{'###' if binding.detail else ''}{binding.label}"
+            for spec in chain(*groups):
+                path = f"//$FOCUSED/{'###' if spec.detail else ''}{spec.label}"
                 if robot.item_exists(path):
-                    found.append(name)
+                    found.append(spec.name)
             robot.popup_close_all()
 
     window.run(look)
-    assert found == list(BINDINGS)
+    assert found == list(ACTIONS)
 
 
 def test_greyed_entries_tell_what_is_on_without_a_project(window):
@@ -202,7 +204,7 @@ def test_greyed_entries_tell_what_is_on_without_a_project(window):
 
     window.run(look)
     assert checked == {"Wireframe": True, "Handles": True, "Outline": False}
-    assert not BINDINGS["loop"].is_active(window.session)
+    assert not ACTIONS["loop"].is_active(window.session)
 
 
 def test_the_layout_can_be_put_back(window):
@@ -281,8 +283,8 @@ def test_no_two_actions_have_the_same_key(is_mac):
     # Esc ends one thing after the other: cutting out, a recording, a guide, then what is
     # selected.
     ended = {"pose", "record nothing", "leave guide", "no motion"}
-    bindings = [binding for name, binding in BINDINGS.items() if name not in ended]
-    chords = [int(key) for binding in bindings for key in binding.chords(is_mac=is_mac)]
+    bindings = [binding for name, binding in ACTIONS.items() if name not in ended]
+    chords = [int(key) for binding in bindings for key in chords_of(binding, is_mac=is_mac)]
     assert len(set(chords)) == len(chords)
 
 
@@ -298,15 +300,17 @@ def test_no_action_has_a_key_that_macos_takes():
         *(CTRL | ALT | SHIFT | int(each) for each in (key.q, key.escape)),
         int(key.f11),
     }
-    for name, binding in BINDINGS.items():
-        assert taken.isdisjoint(binding.chords(is_mac=True)), name
-        assert (CTRL | int(key.q) in binding.chords(is_mac=True)) == (name == "quit")
+    for name, binding in ACTIONS.items():
+        assert taken.isdisjoint(chords_of(binding, is_mac=True)), name
+        assert (CTRL | int(key.q) in chords_of(binding, is_mac=True)) == (name == "quit")
 
 
 def test_the_mirror_axis_has_another_key_on_macos():
-    axis = BINDINGS["mirror axis"]
-    assert [format_chord(chord, is_mac=True) for chord in axis.chords(is_mac=True)] == ["⇧⌘M"]
-    assert [format_chord(chord, is_mac=False) for chord in axis.chords(is_mac=False)] == ["Ctrl+M"]
+    axis = ACTIONS["mirror axis"]
+    assert [format_chord(chord, is_mac=True) for chord in chords_of(axis, is_mac=True)] == ["⇧⌘M"]
+    assert [format_chord(chord, is_mac=False) for chord in chords_of(axis, is_mac=False)] == [
+        "Ctrl+M"
+    ]
 
 
 def test_a_tab_that_is_out_of_view_is_found_by_its_name(window):

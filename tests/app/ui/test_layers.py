@@ -29,13 +29,13 @@ from app.document import (
 )
 from app.document.keyframe import Target
 from app.editor import do
-from app.editor.actions import editing, playback, viewing
+from app.editor.actions import dialog_actions, editing, playback
+from app.editor.actions.dialog_actions import close_dialog
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.project_files import saving
 from app.editor.actions.project_files.files import ONE_PICTURE
 from app.editor.actions.timing import keys, timeline_drag
-from app.editor.actions.viewing import close_dialog
 from app.editor.layering.layer_list import (
     duplicate_layer,
     layer_at,
@@ -60,7 +60,7 @@ from app.errors import EMPTY_IMPORT_LOG
 from app.motion import ParentTransforms
 from app.storage import load_project, save_project
 from app.ui.panel import is_in_front
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.table import ACTIONS
 from app.ui.window import memory
 
 WIDTH, HEIGHT = 240, 200
@@ -1049,8 +1049,8 @@ def test_import_log_stays_in_the_panel(window, stranger):
     window.run(fold)
     window.frames(3)
     assert not project.is_import_log_open
-    assert BINDINGS["import"].is_possible(window.session)
-    BINDINGS["import"].action.apply(window.session)
+    assert ACTIONS["import"].disabled_reason(window.session) is None
+    ACTIONS["import"].action.apply(window.session)
     assert project.is_import_log_open
 
 
@@ -1064,7 +1064,7 @@ def test_import_log_is_saved_and_not_shown_again(window, stranger, tmp_path):
     assert not window.session.notices.toasts
     assert not project.is_import_log_open
     window.show_tab("Handle")
-    BINDINGS["import"].action.apply(window.session)
+    ACTIONS["import"].action.apply(window.session)
     window.frames(3)
     assert is_in_front("Layers")
     assert project.is_import_log_open
@@ -1086,7 +1086,7 @@ def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
     arm = identity(project, "arm")
     window.act(set_active_layer, arm)
     window.show_tab("Layers")
-    window.act(viewing.toggle_import_log)
+    window.act(dialog_actions.toggle_import_log)
 
     def play(robot):
         robot.set_ref("Layers")

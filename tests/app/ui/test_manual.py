@@ -4,7 +4,7 @@ import webbrowser
 
 import pytest
 
-from app.editor.actions import viewing
+from app.editor.actions import dialog_actions
 from app.editor.actions.layer_setup import cut_out_editing
 from app.storage import manual_page
 
@@ -55,7 +55,7 @@ def test_without_a_browser_it_tells_where_the_page_lies(window, monkeypatch, kin
 
     monkeypatch.delenv("BROWSER", raising=False)
     monkeypatch.setattr(webbrowser, "get", get)
-    window.act(viewing.open_manual, "layers")
+    window.act(dialog_actions.open_manual, "layers")
     (toast,) = window.session.notices.toasts
     assert "No browser was found" in toast.text
     assert str(manual_page("layers")) in toast.text

@@ -1,6 +1,7 @@
 """The menus of the drawing, tooltips, and a panel that stays where it is between keys."""
 
 from dataclasses import replace
+from itertools import chain
 
 import pytest
 from bars import BENT
@@ -11,9 +12,9 @@ from app.document import DEPTH, Channel, channel_commands
 from app.document.commands import handle_commands
 from app.document.commands.command import Command
 from app.editor.actions import editing, playback
+from app.editor.tools import move_tool
 from app.storage.assets import sample_images
 from app.ui import panel
-from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.widgets import draw_tooltip
 from app.ui.viewport.viewport import CANVAS
 
@@ -87,14 +88,14 @@ def test_the_canvas_has_a_menu(window, loose):
 
     def play(robot):
         open_menu(robot, beside)
-        for name in (name for group in CANVAS for name in group):
-            label = BINDINGS[name].label
+        for spec in chain(*CANVAS):
+            label = spec.label
             if any(robot.item_exists(f"//$FOCUSED/{before}{label}") for before in ("", "###")):
-                found.append(name)
-        robot.item_click(f"//$FOCUSED/{BINDINGS['move'].label}")
+                found.append(spec)
+        robot.item_click(f"//$FOCUSED/{move_tool.toggle_move_tool.label}")
 
     window.run(play)
-    assert found == [name for group in CANVAS for name in group]
+    assert found == list(chain(*CANVAS))
     assert window.session.moves
 
 

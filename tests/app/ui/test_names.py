@@ -11,7 +11,7 @@ import pytest
 
 from app.document.settings import ExportSettings
 from app.editor.action import do
-from app.editor.actions import viewing
+from app.editor.actions import dialog_actions
 from app.editor.actions.project_files import export_settings, files, recovery, saving
 from app.editor.actions.timing import keys
 from app.editor.parts.dialogs import FileDialog
@@ -131,7 +131,7 @@ def test_our_file_browser_lists_and_chooses_it(window, folder, writes):
         writes=writes,
         chosen=lambda path: do(partial(note, chosen), path),
     )
-    window.act(viewing.show_dialog, question)
+    window.act(dialog_actions.show_dialog, question)
     window.frames(3)
     press(window, *([] if writes else ["down_arrow", "down_arrow"]), "enter")
     assert chosen == [folder / f"{NAME}.png"]

@@ -9,7 +9,7 @@ from functools import partial
 import pytest
 
 from app.editor.action import do
-from app.editor.actions import viewing
+from app.editor.actions import dialog_actions
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.project_files import files, saving
 from app.editor.parts.dialogs import FileDialog, Question
@@ -108,7 +108,7 @@ def ask(window, tmp_path, chosen):
             "writes": True,
             "chosen": lambda path: do(partial(note, chosen), path),
         }
-        window.act(viewing.show_dialog, FileDialog(**(settings | changes)))
+        window.act(dialog_actions.show_dialog, FileDialog(**(settings | changes)))
 
     return open_dialog
 

@@ -16,7 +16,8 @@ from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.poses import flipping
 from app.storage import load_project, save_project
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import chords_of
+from app.ui.shortcuts.table import ACTIONS
 
 CTRL, SHIFT, ALT = (
     int(key) for key in (imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt)
@@ -248,7 +249,7 @@ def test_the_axis_is_entered_shown_and_put_back(window, project):
     assert flipping.is_mirror_axis_shown(window.session, window.session.project)
     window.run(lambda robot: robot.item_click("//###Poses/Middle"))
     assert project.layer.mirror is None
-    press(window, BINDINGS["mirror axis"].chords()[0])
+    press(window, chords_of(ACTIONS["mirror axis"])[0])
     assert not flipping.is_mirror_axis_shown(window.session, window.session.project)
 
 

@@ -87,14 +87,14 @@ from app.editor.layering.parenting import (
 from app.editor.layering.pictures import add_layers, make_posable, make_still
 from app.editor.layering.switches import create_switch, delete_switch
 from app.editor.parts.timeline import TimeRangeView
-from app.editor.poses import copying, flipping, library, pasting
+from app.editor.poses import copying, flipping, library, pasting, pasting_targets
 from app.editor.work import pull
 from app.editor.work.jobs import JobKind, Jobs
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
 from app.ui.shortcuts.key_input import ARROWS
-from app.ui.shortcuts.keys import MODIFIERS
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import MODIFIERS, chords_of
+from app.ui.shortcuts.table import ACTIONS
 from engine.domain.outline import enclosure, fitting
 from engine.interpolation.added.pins import pinning
 from engine.maps import boundary
@@ -129,9 +129,9 @@ CHEAP = (
 )
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
-NAMED = [name for name in BINDINGS if name not in {*LEAVING, "manual", "first animation"}]
+NAMED = [name for name in ACTIONS if name not in {*LEAVING, "manual", "first animation"}]
 BOUND = [
-    key for name, binding in BINDINGS.items() if name not in LEAVING for key in binding.chords()
+    key for name, binding in ACTIONS.items() if name not in LEAVING for key in chords_of(binding)
 ]
 TABS = ("Handle", "Layers", "Deform", "Distortion", "Mesh", "Cut-out", "Export")
 WIDGETS = (
@@ -322,10 +322,10 @@ class Walk:
 
     def do_named(self) -> None:
         """Do something of the menus, whatever is in hand."""
-        possible = [name for name in NAMED if BINDINGS[name].is_possible(self.session)]
+        possible = [name for name in NAMED if ACTIONS[name].disabled_reason(self.session) is None]
         name = self.choice(possible)
         self.note(name)
-        self.window.act(BINDINGS[name].action.apply)
+        self.window.act(ACTIONS[name].action.apply)
 
     def press_arrow(self) -> None:
         shift = int(imgui.Key.mod_shift) if self.chance(0.2) else 0
@@ -552,7 +552,7 @@ class Walk:
     def copy_and_paste(self) -> None:
         if len(self.project.layer.keys) < MOST_KEYS:
             way = self.choice(("as it is", "swapped", "flipped"))
-            pastes = ((pasting.paste_copied, way), (pasting.paste_on_selected, way))
+            pastes = ((pasting.paste_copied, way), (pasting_targets.paste_on_selected, way))
             self.act(
                 *self.choice(((copying.copy_pose_or_keys,), (copying.copy_all_poses,), *pastes))
             )

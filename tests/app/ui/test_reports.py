@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from app.editor import error_reports
-from app.editor.actions import viewing
+from app.editor.actions import dialog_actions, viewing
 from app.editor.actions.project_files import recovery
 from app.editor.parts.dialogs import FileDialog, ProblemReport, RecoveryDialog
 from app.reports import format_trace
@@ -78,7 +78,7 @@ def test_a_bug_offers_a_report_that_is_shown_changed_and_saved(window, tmp_path,
     window.run(lambda robot: robot.item_click("//###dialog/Save as…"))
     window.frames(2)
     assert isinstance(session.dialogs.current, FileDialog)
-    window.act(viewing.choose_file, session.dialogs.current, tmp_path / "it.txt")
+    window.act(dialog_actions.choose_file, session.dialogs.current, tmp_path / "it.txt")
     assert session.dialogs.current is None
     text = (tmp_path / "it.txt").read_text(encoding="utf-8")
     assert text == f"It fell over.\n{report.text}"

@@ -7,7 +7,7 @@ import pytest
 
 from app.document.keyframe import Target
 from app.document.settings import Meshing
-from app.editor.actions import editing, playback, viewing
+from app.editor.actions import dialog_actions, editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.render import heat_colormap
@@ -161,12 +161,12 @@ def test_screenshots_of_the_main_states(window, dragon, save):
     assert not near(posing_[600:, 900:], palette.danger).any()
 
     session.notices.toasts = []
-    viewing.show_shortcuts(session)
+    dialog_actions.show_shortcuts(session)
     sheet = save("shortcuts")
     assert near(sheet[150:650, 150:1130], palette.text, 40).mean() > 0.005
     assert in_viewport(sheet)[:30].mean() < 0.75 * in_viewport(posing_)[:30].mean()  # dimmed
 
-    viewing.close_dialog(session)
+    dialog_actions.close_dialog(session)
     session.project = None
     welcome = save("welcome")
     colours = welcome.max(axis=2) - welcome.min(axis=2)

@@ -4,7 +4,7 @@ from harness import Harness
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
-from app.editor.actions import editing, playback, viewing
+from app.editor.actions import dialog_actions, editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.project_files import saving
 from app.editor.work.jobs import Job, JobKind
@@ -133,14 +133,14 @@ def test_tabs_have_their_names_as_far_as_there_is_room(window):
 
 def test_themes_change_nothing_else_at_a_larger_scale(window):
     window.resize((1280, 800), 2.0)
-    viewing.show_shortcuts(window.session)
+    dialog_actions.show_shortcuts(window.session)
     window.frames(30)
     before = window.picture()
     for _ in range(4):
         viewing.toggle_theme(window.session)
         window.frames(2)
     assert window.picture() == before
-    viewing.close_dialog(window.session)
+    dialog_actions.close_dialog(window.session)
     window.resize((1280, 800))
 
 

@@ -15,7 +15,7 @@ from app.document.commands import handle_commands
 from app.document.keyframe import Target
 from app.document.queries.target_error import HELD_BY_LIMITS, measure_target_errors
 from app.document.settings import FrameRange, Meshing
-from app.editor.actions import editing, frame_update, playback, viewing
+from app.editor.actions import dialog_actions, editing, frame_update, playback, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import INSERTING, insert_key
@@ -691,7 +691,7 @@ def test_panels_draw_in_every_window(window, sized, request, kind, size):
         window.act(viewing.toggle_overlay, "onion")
         window.act(playback.toggle_play)
         window.frames(5)
-    window.act(viewing.show_shortcuts)
+    window.act(dialog_actions.show_shortcuts)
     window.frames(3)
     assert window.picture().size == size[0]
     assert details(window) == []

@@ -11,9 +11,8 @@ from scenes import PICTURE, random_scene, random_state
 
 from app.editor.actions.project_files import saving
 from app.errors import EXPECTED_ERRORS
-from app.ui.shortcuts.table import MENUS
+from app.ui.shortcuts.table import ACTIONS
 
-VERBS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}
 TABS = ("Handle", "Layers", "Poses", "Motion", "Deform", "Material", "Mesh", "Export")
 DRAWN = 3  # verbs of each document after which the window is drawn
 SEEDS = (*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 16)))
@@ -41,9 +40,9 @@ def put(window, project, rng):
 def apply(session, name):
     """Do what a menu entry does, unless it says why not."""
     with suppress(*EXPECTED_ERRORS):
-        if VERBS[name].is_possible(session):
-            VERBS[name].menu_title(session)
-            VERBS[name].action.apply(session)
+        if ACTIONS[name].disabled_reason(session) is None:
+            ACTIONS[name].menu_title(session)
+            ACTIONS[name].action.apply(session)
 
 
 @pytest.mark.usefixtures("alone")
@@ -54,8 +53,8 @@ def test_verbs_work_on_random_documents_or_say_why_not(window, seed):
         for number in range(EACH):
             project = project_of(random_scene(rng), PICTURE, "scene")
             window.show_tab(TABS[rng.integers(len(TABS))])
-            drawn = set(rng.choice(list(VERBS), DRAWN))
-            for name in VERBS:
+            drawn = set(rng.choice(list(ACTIONS), DRAWN))
+            for name in ACTIONS:
                 put(window, project, rng)
                 walk = seed, number, name
                 try:

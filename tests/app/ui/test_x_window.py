@@ -18,7 +18,7 @@ import pytest
 from PIL import ImageGrab
 
 from app.cli.window_process import WORK_KEPT
-from app.editor.actions import viewing
+from app.editor.actions import dialog_actions
 from app.editor.actions.project_files import saving
 from app.storage.assets import sample_images
 from app.storage.autosave import find_recoverable_files, load_recoverable_file
@@ -243,7 +243,7 @@ def name_field(window):
     window.run(lambda robot: fields.append(robot.item_info("//###dialog/##file name").rect_full))
     place = int(fields[0].min.x) + 2 * NEAR, int(fields[0].get_center().y)
     look = around(place, window.picture())
-    window.act(viewing.close_dialog)
+    window.act(dialog_actions.close_dialog)
     return place, look
 
 

@@ -10,6 +10,7 @@ from app.cut_out import CutLine, Mask, Stroke
 from app.document import shape_commands
 from app.editor.action import do
 from app.editor.actions import editing
+from app.editor.actions.action_spec import named_action, unless
 from app.editor.error_reports import run_job
 from app.editor.project import Project
 from app.editor.session import CutTool, Session, with_project
@@ -45,16 +46,41 @@ def toggle_cut_tool(session: Session, project: Project, tool: CutTool | None) ->
         session.panel_to_focus = PANEL if session.cutting else session.panel_to_focus
 
 
+@named_action(
+    "cut out", _("Cut-out brush"), "X", active=lambda session: session.cutting is not None
+)
 def toggle_cut_brush(session: Session) -> None:
     """Select the brush that removes; if a brush is selected, swap keep and remove."""
     toggle_cut_tool(session, "keep" if session.cutting == "remove" else "remove")
 
 
+UNLESS_BRUSH = unless(
+    lambda session, _: (
+        session.cutting in {"keep", "remove"} or session.material not in {None, "bone"}
+    ),
+    _("Select a brush in the Cut-out or Material tab first."),
+)
+
+
+@named_action(
+    "larger brush",
+    _("Larger brush"),
+    "RightBracket",
+    why_disabled=UNLESS_BRUSH,
+    repeats_while_held=True,
+)
 @with_project
 def enlarge_brush(session: Session, project: Project) -> None:
     set_brush_radius(session, brush_radius(project) * BRUSH_STEP)
 
 
+@named_action(
+    "smaller brush",
+    _("Smaller brush"),
+    "LeftBracket",
+    why_disabled=UNLESS_BRUSH,
+    repeats_while_held=True,
+)
 @with_project
 def shrink_brush(session: Session, project: Project) -> None:
     set_brush_radius(session, brush_radius(project) / BRUSH_STEP)

@@ -11,6 +11,7 @@ from app.document import (
     layer_commands,
     mirrored_handles_by_name,
 )
+from app.editor.actions.action_spec import UNLESS_HANDLES, named_action, unless
 from app.editor.actions.editing import edit_layer, select_handles
 from app.editor.actions.timing import channel_keys
 from app.editor.project import Project
@@ -18,6 +19,14 @@ from app.editor.session import Session, with_project
 from app.texts import _
 
 
+@named_action(
+    "mirrored",
+    _("Select partners"),
+    "Shift+M",
+    icon="RIGHT_LEFT",
+    hint=_("Select the handles with the same names on the other side"),
+    why_disabled=UNLESS_HANDLES,
+)
 @with_project
 def select_mirrored(session: Session, project: Project) -> None:
     """Select the handles on the other side whose names match the selected ones."""
@@ -34,6 +43,21 @@ def select_mirrored(session: Session, project: Project) -> None:
         )
 
 
+def _are_all_locked(session: Session) -> bool:
+    project = session.project
+    selected = project.selected_handles if project else frozenset[int]()
+    return bool(project and selected and all(map(project.layer.is_locked, selected)))
+
+
+@named_action(
+    "lock",
+    _("Lock"),
+    "Shift+L",
+    icon="LOCK",
+    hint=_("Locked handles keep their places and cannot be dragged"),
+    why_disabled=UNLESS_HANDLES,
+    active=_are_all_locked,
+)
 @with_project
 def toggle_handles_locked(session: Session, project: Project) -> None:
     """Lock the selected handles, or unlock them if all are locked."""
@@ -45,6 +69,16 @@ def toggle_handles_locked(session: Session, project: Project) -> None:
         edit_layer(session, handle_commands.lock_handles, project.selected_handles, locked=locked)
 
 
+@named_action(
+    "group",
+    _("Group"),
+    "Ctrl+G",
+    icon="OBJECT_GROUP",
+    hint=_("Select and drag these handles together"),
+    why_disabled=unless(
+        lambda _, project: len(project.selected_handles) > 1, _("Select several handles first.")
+    ),
+)
 @with_project
 def group_handles(session: Session, project: Project) -> None:
     if len(project.selected_handles) > 1:
@@ -54,6 +88,21 @@ def group_handles(session: Session, project: Project) -> None:
         edit_layer(session, handle_commands.group_handles, project.selected_handles, name)
 
 
+@named_action(
+    "ungroup",
+    _("Ungroup"),
+    "Ctrl+Shift+G",
+    icon="OBJECT_UNGROUP",
+    hint=_("Stop selecting and dragging these handles together"),
+    why_disabled=unless(
+        lambda _, project: any(
+            handle.group
+            for handle in project.layer.handles
+            if handle.id in project.selected_handles
+        ),
+        _("Select a handle of a group first."),
+    ),
+)
 @with_project
 def ungroup_handles(session: Session, project: Project) -> None:
     """Dissolve the groups of the selected handles."""

@@ -8,6 +8,7 @@ from app.document import Target, relax_limits, shape_commands
 from app.editor import pending_changes
 from app.editor.action import do
 from app.editor.actions import editing
+from app.editor.actions.layer_setup.layer_runtimes import update_layer_runtimes
 from app.editor.actions.posing.pose_drag import solve_pose_again
 from app.editor.error_reports import as_sentence, report_failure
 from app.editor.project import Project
@@ -187,7 +188,7 @@ def _accept(session: Session, project: Project, resolver: KeyResolver) -> None:
             project.history.set_preview_pose(None, gesture=gesture)
             project.meshing = None
     if resolver.replaces_picture:
-        editing.update_layer_runtimes(project)
+        update_layer_runtimes(project)
     for number, notice in enumerate(resolver.notices):
         # This runs after every stroke, and notices of earlier strokes are out of date.
         session.notices.show(as_sentence(notice), topic=f"rebuilt {number}")

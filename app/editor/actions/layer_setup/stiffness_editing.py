@@ -6,7 +6,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from app.document import Bone, bone_region, brushed_stiffness, stiffness_commands
+from app.editor.action import do
 from app.editor.actions import editing, playback
+from app.editor.actions.action_spec import ActionSpec, named_action, unless
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.posing.pose_drag import solve_pose_again
 from app.editor.project import Project
@@ -37,6 +39,26 @@ def toggle_stiffness_tool(session: Session, project: Project, tool: MaterialTool
         session.cutting, session.moves, project.motion_setup = None, False, None
         if project.brush is None:
             cut_out_editing.set_brush_radius(session, FIRST_BRUSH * max(project.layer.picture.size))
+
+
+MAKE_STIFF = ActionSpec(
+    do(toggle_stiffness_tool, "stiff"),
+    "stiffen",
+    _("Make parts stiff"),
+    "G",
+    icon="CUBE",
+    hint=_("Brush over parts that bend and stretch less"),
+    active=lambda session: session.material in BRUSHES,
+)
+DRAW_BONES = ActionSpec(
+    do(toggle_stiffness_tool, "bone"),
+    "bone",
+    _("Draw bones"),
+    "Shift+B",
+    icon="BONE",
+    hint=_("Drag from one handle to another: the limb between them is stiff"),
+    active=lambda session: session.material == "bone",
+)
 
 
 def set_stiffness_strength(session: Session, strength: float) -> None:
@@ -98,6 +120,13 @@ def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
         session.notices.show(message_of(error), tone="error", topic="material")
 
 
+@named_action(
+    "bone between",
+    _("Add bone"),
+    why_disabled=unless(
+        lambda _, project: len(project.selected_handles) == 2, _("Select two handles first.")
+    ),
+)
 @with_project
 def add_bone_between_selected(session: Session, project: Project) -> None:
     if len(project.selected_handles) == 2:
@@ -118,14 +147,14 @@ def set_bones_visible(session: Session, *, shown: bool) -> None:
     editing.edit_layer(session, stiffness_commands.set_bones_visible, shown=shown)
 
 
-def bone_disabled_reason(project: Project, ends: tuple[int, int]) -> str:
-    """Return why no bone can be put between two handles; empty if one can."""
+def bone_disabled_reason(project: Project, ends: tuple[int, int]) -> str | None:
+    """Return why no bone can be put between two handles; None if one can."""
     layer = project.layer
     try:
         bone_region(layer, Bone(ends=ends), layer.domain.outline)
     except (EngineError, LissomError) as error:
         return message_of(error)
-    return ""
+    return None
 
 
 @with_project

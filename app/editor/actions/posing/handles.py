@@ -14,6 +14,7 @@ from app.document import (
     shape_commands,
 )
 from app.editor.action import do
+from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
 from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -55,6 +56,12 @@ def remove_handles(
     project.selected_handles -= identities
 
 
+@named_action(
+    "suggest handles",
+    _("Suggest handles"),
+    icon="WAND_MAGIC_SPARKLES",
+    hint=_("Add named handles on body and head, and at tips and joints of limbs"),
+)
 @with_project
 def suggest_handles(session: Session, project: Project) -> None:
     """Add handles on the body, at tips and joints of limbs that have none."""
@@ -100,6 +107,13 @@ def _take_suggestions_back(
     project.selected_handles -= added
 
 
+@named_action(
+    "mirror",
+    _("Mirror"),
+    icon="LEFT_RIGHT",
+    hint=_("Add partners on the other side, named .L and .R or left and right"),
+    why_disabled=UNLESS_HANDLES,
+)
 @with_project
 def mirror_handles(session: Session, project: Project) -> None:
     """Add a partner of each selected handle across the mirror axis, with the matching name."""

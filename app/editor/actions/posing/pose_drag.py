@@ -6,6 +6,7 @@ from functools import partial
 
 from app.document import Pose, Target, keyed_pose_at, segment_time_at
 from app.editor.actions import playback
+from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
 from app.editor.actions.posing.pose_commit import commit_pose
 from app.editor.actions.posing.pose_solver import POSING, step_pose_solver
 from app.editor.project import Project
@@ -84,6 +85,14 @@ def set_targets(session: Session, targets: Mapping[int, Target]) -> None:
     _once(session, targets)
 
 
+@named_action(
+    "pin here",
+    _("Pin here"),
+    "P",
+    icon="THUMBTACK",
+    hint=_("Keep the selected handles where they are in this frame"),
+    why_disabled=UNLESS_HANDLES,
+)
 @with_project
 def pin_selected_handles(session: Session, project: Project) -> None:
     """Set the targets of the selected handles to their present places."""

@@ -6,6 +6,7 @@ from pathlib import Path
 from app.document import ExportSettings, scene_commands
 from app.editor.action import Action, do
 from app.editor.actions import editing
+from app.editor.actions.action_spec import named_action
 from app.editor.actions.project_files.exporting import start_export
 from app.editor.parts.dialogs import FileDialog
 from app.editor.project import Project
@@ -42,6 +43,7 @@ def start_export_at(session: Session, out: Path) -> None:
     start_export(session, out)
 
 
+@named_action("export again", _("Export again"), "Ctrl+Shift+E")
 @with_project
 def repeat_export(session: Session, project: Project) -> None:
     """Export to the chosen or last destination; ask if there is neither."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from app.document import Clip, ExportSettings, FrameRange, clip_of
 from app.editor import pending_changes
 from app.editor.action import Action, do
+from app.editor.actions.action_spec import named_action
 from app.editor.actions.posing.pose_commit import key_pose_command
 from app.editor.error_reports import as_sentence, report_failure, run_job
 from app.editor.parts.export_state import ExportRun
@@ -92,6 +93,7 @@ def _begin(session: Session, project: Project, request: ExportRequest) -> None:
     _prepare(session, project, request, begun)
 
 
+@named_action("copy picture", _("Copy picture"), "Ctrl+Shift+C")
 @with_project
 def copy_picture(session: Session, project: Project) -> None:
     """Copy the picture of the shown frame to the clipboard, drawn as an export draws it."""
@@ -99,14 +101,12 @@ def copy_picture(session: Session, project: Project) -> None:
         return
     clipboard_program()  # raises an error with the program to install if there is none
     make_settings_folder(session.settings.folder)
-    out = temporary_picture(session.settings.folder)
     settings = replace(project.document.export, format=STILL_FORMAT)
-    request = _request(session, project, out, settings)
+    request = _request(session, project, temporary_picture(session.settings.folder), settings)
     check_request(project.document, request)
     session.export.begin()
-    pending_changes.run_when_idle(
-        session, do(_begin_copy, request), _("Copy the picture"), changes=False
-    )
+    label = _("Copy the picture")
+    pending_changes.run_when_idle(session, do(_begin_copy, request), label, changes=False)
 
 
 @with_project

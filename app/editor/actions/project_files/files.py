@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from app.document import Document, History, Meshing, clip_of, motion_notices
 from app.editor.action import Action, do
-from app.editor.actions import playback, viewing
+from app.editor.actions import dialog_actions, playback
+from app.editor.actions.action_spec import named_action
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.project_files import saving
 from app.editor.actions.project_files.saving import PROJECT
@@ -66,12 +67,8 @@ def open_recent_file(session: Session, path: Path) -> None:
         open_file(session, path)
         return
     session.settings.remove_recent(path)
-    session.notices.show(
-        _("{name} is no longer in {folder}. It was removed from the recent files.").format(
-            name=path.name, folder=path.parent
-        ),
-        tone="error",
-    )
+    text = _("{name} is no longer in {folder}. It was removed from the recent files.")
+    session.notices.show(text.format(name=path.name, folder=path.parent), tone="error")
 
 
 class NextStep(NamedTuple):
@@ -93,6 +90,7 @@ class OpenedFile(NamedTuple):
     drawings: tuple[Path, ...] = ()
 
 
+@named_action("open", _("Open…"), "Ctrl+O", needs_project=False)
 def ask_file_to_open(session: Session) -> None:
     session.ask_file(_("Open image or project"), OPENABLE, lambda path: do(open_file, path))
 
@@ -208,7 +206,7 @@ def _install(
     for notice in opened.notices:
         session.notices.show(as_sentence(notice))
     if opened.drawings:
-        viewing.show_import_notice(session, project, opened.document.import_log)
+        dialog_actions.show_import_notice(session, project, opened.document.import_log)
     if opened.next_step:
         session.notices.show(tone="good", **opened.next_step._asdict())
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from app.document import History
 from app.editor.action import do
+from app.editor.actions.action_spec import named_action
 from app.editor.actions.project_files import saving
 from app.editor.actions.project_files.files import OpenedFile, decode_project, foremost_posable
 from app.editor.error_reports import run_job
@@ -30,6 +31,7 @@ def ask_recovery(session: Session) -> None:
         session.dialogs.show(RecoveryDialog(candidates))
 
 
+@named_action("unsaved work", _("Unsaved work…"), needs_project=False)
 def show_recovery(session: Session) -> None:
     """Show the unsaved work of earlier sessions, or a notice that there is none."""
     ask_recovery(session)

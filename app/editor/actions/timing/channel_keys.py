@@ -17,9 +17,11 @@ from app.document import (
     value_at,
 )
 from app.editor.actions import editing, playback
+from app.editor.actions.action_spec import named_action, unless
 from app.editor.project import Project, fit_view_around
 from app.editor.session import Session, with_project
 from app.motion import BoundingBox
+from app.texts import _
 
 
 @with_project
@@ -60,6 +62,12 @@ def set_key_value(session: Session, channel: Channel[Any], frame: int, value: An
     editing.edit_document(session, channel_commands.set_key(channel, frame, value))
 
 
+@named_action(
+    "key camera",
+    _("Key the camera"),
+    icon="VIDEO",
+    hint=_("Key the camera at this frame: it shows what the viewport shows now"),
+)
 @with_project
 def key_camera(session: Session, project: Project) -> None:
     """Key the camera at the playhead with the viewport's view.
@@ -78,6 +86,15 @@ def key_camera(session: Session, project: Project) -> None:
     editing.edit_document(session, channel_commands.set_key(Channel(CAMERA), frame, camera))
 
 
+@named_action(
+    "look through",
+    _("Look through the camera"),
+    hint=_("Show the camera's picture in each frame, until you move the view"),
+    why_disabled=unless(
+        lambda _, project: project.document.camera, _("There is no camera. Key the camera first.")
+    ),
+    active=lambda session: session.project and session.project.is_camera_view,
+)
 @with_project
 def toggle_camera_view(_: Session, project: Project) -> None:
     """Show the camera's view in the viewport, or the earlier view again."""

@@ -12,6 +12,7 @@ from app.document import (
     pose_channel,
 )
 from app.editor.actions import editing, playback
+from app.editor.actions.action_spec import named_action, unless
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.errors import LissomError
@@ -37,6 +38,19 @@ def cycle_at_playhead(session: Session, project: Project, frame: int | None = No
     return project.layer.cycle_at(here)
 
 
+def _repeat_text(_session: Session, project: Project) -> str:
+    frames = selected_range(project)
+    if frames is None:
+        return ""
+    return _("Repeat frames {first} to {last}").format(first=frames[0], last=frames[1])
+
+
+@named_action(
+    "repeat",
+    _("Repeat"),
+    detail=_repeat_text,
+    why_disabled=unless(_repeat_text, _("Set a second key first. Keys are repeated.")),
+)
 @with_project
 def create_cycle(session: Session, project: Project) -> None:
     """Make a cycle of the selected keys, in all layers that are selected or have such keys."""
@@ -50,12 +64,17 @@ def create_cycle(session: Session, project: Project) -> None:
     editing.edit_document(session, Command(_("Repeat"), lambda now: _all_of(commands, layers, now)))
 
 
+UNLESS_CYCLE = unless(cycle_at_playhead, _("Move the playhead to frames that repeat first."))
+
+
+@named_action("repeat no more", _("Stop repeating"), why_disabled=UNLESS_CYCLE)
 @with_project
 def end_cycle(session: Session, project: Project, frame: int | None = None) -> None:
     """Remove the repeats of the cycle at a frame, by default the present one."""
     _change(session, project, frame, cycle_commands.delete_cycle)
 
 
+@named_action("repeats into keys", _("Bake repeats"), why_disabled=UNLESS_CYCLE)
 @with_project
 def bake_cycle(session: Session, project: Project, frame: int | None = None) -> None:
     """Bake the repeats at a frame into keys; by default the present frame."""

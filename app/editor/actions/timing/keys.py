@@ -8,6 +8,7 @@ from app.document import (
     MARKER,
     PARENT,
     POSE,
+    PRESETS,
     Channel,
     Command,
     Easing,
@@ -26,6 +27,7 @@ from app.document import (
 )
 from app.editor.action import do
 from app.editor.actions import editing, playback
+from app.editor.actions.action_spec import ActionSpec, named_action, unless
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.timing import channel_keys, tracks
 from app.editor.project import Project
@@ -55,6 +57,9 @@ def edit_timing(
         project.playhead = project.playhead.seek(frame, session.clock())
 
 
+@named_action(
+    "insert key", _("Insert key"), "I", icon="DIAMOND", hint=_("Set a key with the current pose")
+)
 @with_project
 def insert_key_in_row(session: Session, project: Project) -> None:
     """Insert a key at the present frame into the selected channel, with its present value."""
@@ -117,6 +122,7 @@ def set_revolutions(session: Session, keys: KeysByChannel, turns: int) -> None:
     editing.edit_document(session, combine_commands(_("Set turns"), commands))
 
 
+@named_action("pass", _("Next tangent mode"), "T")
 @with_project
 def use_next_tangent_mode(session: Session, project: Project) -> None:
     """Set the next tangent mode of the selected keys, or of the key at or before the playhead."""
@@ -132,6 +138,17 @@ def use_next_tangent_mode(session: Session, project: Project) -> None:
 def ease_selected_keys(session: Session, project: Project, easing: Easing) -> None:
     """Set the easing of the selected keys, or of the key at or before the playhead."""
     set_easing(session, _selected_or_at_playhead(session, project), easing)
+
+
+EASE_KEYS = tuple(
+    ActionSpec(do(ease_selected_keys, PRESETS[preset]), name, label, keys)
+    for name, label, preset, keys in (
+        ("ease", _("Ease in and out"), "in-out", "F9"),
+        ("ease in", _("Ease in"), "in", "Shift+F9"),
+        ("ease out", _("Ease out"), "out", "Ctrl+Shift+F9"),
+        ("ease not", _("Linear"), "linear", "Alt+F9"),
+    )
+)
 
 
 def _selected_or_at_playhead(session: Session, project: Project) -> KeysByChannel:
@@ -189,6 +206,14 @@ def match_loop_ends(session: Session) -> None:
     editing.edit_layer(session, key_commands.match_loop_ends)
 
 
+@named_action(
+    "loop",
+    _("Loop"),
+    "L",
+    icon="REPEAT",
+    hint=_("Loop the animation: its end continues at its start"),
+    active=lambda session: session.project and session.project.document.loop,
+)
 @with_project
 def toggle_loop(session: Session, project: Project) -> None:
     edit_timing(session, scene_commands.set_loop(loop=not project.document.loop))
@@ -207,17 +232,27 @@ def set_last_frame(session: Session, project: Project, last: int) -> None:
     edit_timing(session, scene_commands.set_frames(FrameRange(first, last)))
 
 
+@named_action(
+    "preview none",
+    _("Play all frames"),
+    "Alt+P",
+    why_disabled=unless(
+        lambda _, project: project.document.preview, _("All frames are played already.")
+    ),
+)
 def clear_preview_range(session: Session) -> None:
     """Play all frames."""
     edit_timing(session, scene_commands.set_preview(None))
 
 
+@named_action("preview start", _("Set preview start"), "B")
 @with_project
 def start_preview_at_playhead(session: Session, project: Project) -> None:
     frame = playback.current_frame(session, project)
     _set_preview(session, project, frame, max(frame, project.document.played_frames.last))
 
 
+@named_action("preview end", _("Set preview end"), "N")
 @with_project
 def end_preview_at_playhead(session: Session, project: Project) -> None:
     frame = playback.current_frame(session, project)
@@ -240,6 +275,7 @@ def add_marker(session: Session, project: Project, frame: int) -> None:
         editing.edit_document(session, scene_commands.add_marker(frame))
 
 
+@named_action("marker", _("Add marker"), "M")
 @with_project
 def add_marker_at_playhead(session: Session, project: Project) -> None:
     add_marker(session, playback.current_frame(session, project))

@@ -21,6 +21,7 @@ from app.document import (
     scene_commands,
 )
 from app.editor.actions import editing, playback
+from app.editor.actions.action_spec import named_action
 from app.editor.actions.timing.keys import edit_timing
 from app.editor.parts.timeline import (
     CycleDrag,
@@ -47,6 +48,13 @@ def set_time_range(_: Session, project: Project, strip: TimeRangeView | None) ->
         project.timeline.gesture_time_range = strip
 
 
+@named_action(
+    "fit time",
+    _("Fit timeline"),
+    "Ctrl+Home",
+    icon="ARROWS_LEFT_RIGHT_TO_LINE",
+    hint=_("Show all frames"),
+)
 def fit_timeline(session: Session) -> None:
     set_time_range(session, None)
 

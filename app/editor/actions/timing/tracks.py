@@ -21,6 +21,7 @@ from app.document import (
 )
 from app.editor import pending_changes
 from app.editor.actions import editing, playback
+from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
 from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.actions.tracking.track_space import find_key_frame
 from app.editor.project import Project
@@ -40,6 +41,14 @@ def select_channel(_: Session, project: Project, channel: Channel[Any] | None) -
     project.selected_channel = channel
 
 
+@named_action(
+    "key handle",
+    _("Key this handle only"),
+    "Shift+I",
+    icon="KEY",
+    hint=_("Key only this handle at this frame, on a track of its own"),
+    why_disabled=UNLESS_HANDLES,
+)
 @with_project
 def key_selected_handles(session: Session, project: Project) -> None:
     """Key the selected handles at the present frame, not the pose."""

@@ -10,6 +10,7 @@ from app.document import (
     track_source_frame,
 )
 from app.editor.actions import editing, playback
+from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.actions.tracking.track_dragging import commit_track_drags, commit_track_key
 from app.editor.actions.tracking.track_space import base_frame_at, handle_index
@@ -31,6 +32,18 @@ SMOOTHING = 0.5  # initial value
 NO_RECORDING = _("The recording could not be keyed")
 
 
+IDLE = _("Nothing is being recorded.")
+
+
+@named_action(
+    "record",
+    _("Record drag"),
+    "R",
+    icon="CIRCLE",
+    hint=_("Record the next drag of a handle, while the timeline plays"),
+    why_disabled=unless(lambda session, _: session.cutting is None, _("Stop cutting out first.")),
+    active=lambda session: session.records,
+)
 @with_project
 def toggle_recording_armed(session: Session, project: Project) -> None:
     """Arm the next drag of a handle for recording, or disarm it; earlier recordings stay."""
@@ -108,6 +121,12 @@ def accept_recording(session: Session) -> None:
         session.project.recording = None
 
 
+@named_action(
+    "record nothing",
+    _("Discard recording"),
+    "Escape",
+    why_disabled=unless(lambda session, project: session.records or project.recording, IDLE),
+)
 @with_project
 def discard_recording(session: Session, project: Project) -> None:
     """Undo the recording, or disarm recording."""

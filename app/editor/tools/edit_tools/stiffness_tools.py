@@ -64,7 +64,7 @@ class BoneTool(Tool):
     handle: int
     place: complex
     other: int | None = None  # the handle under the pointer, if any
-    refusal: str = ""
+    refusal: str | None = None  # why there can be no bone
 
     @classmethod
     def hints(cls, session: Session, _project: Project, spot: PointerHit) -> tuple[Hint, ...]:

@@ -5,8 +5,9 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 from app.cut_out import CutOut
 from app.editor import Action, CutTool, Project, Session, do
 from app.editor.actions.layer_setup import cut_out_editing, resolving
+from app.editor.tools import move_tool
 from app.texts import _, ngettext
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import shown_keys
 from app.ui.style.sliders import Scale, slider
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
@@ -133,7 +134,7 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
 
 def brush_hint() -> str:
     """Return the tooltip of the brush's size, with the shortcuts that change the size."""
-    smaller, larger = (BINDINGS[name].shown_keys for name in ("smaller brush", "larger brush"))
+    smaller, larger = map(shown_keys, (cut_out_editing.shrink_brush, cut_out_editing.enlarge_brush))
     text = _("Radius of the brush in pixels of the picture. {smaller} and {larger} change it.")
     return text.format(smaller=smaller, larger=larger)
 
@@ -205,7 +206,7 @@ def _state(session: Session, look: Look, project: Project) -> list[Action]:
         if progress_bar(resolver.progress, resolver.status_text):
             actions.append(do(resolving.cancel_solving_keys))
     elif session.cutting is not None:
-        hint, keys = _("Show the posed drawing"), BINDINGS["pose"].shown_keys
+        hint, keys = _("Show the posed drawing"), shown_keys(move_tool.return_to_posing)
         if text_button(_("Back to posing") + "###done", FILL, hint, keys):
             actions.append(do(cut_out_editing.toggle_cut_tool, None))
     if project.layer.is_stale and project.layer is project.unbuildable:

@@ -6,6 +6,7 @@ from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import Group, Layer, SwitchGroup, TreeRow, subgroups_with_layers
 from app.editor import Action, Project, do
+from app.editor.layering import layer_list
 from app.editor.layering.layer_list import (
     duplicate_layer,
     group_layers,
@@ -26,7 +27,7 @@ from app.editor.layering.switches import (
     remove_from_switch,
 )
 from app.texts import _, ngettext
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import shown_keys
 from app.ui.style.widgets import draw_tooltip
 
 SOLO = icons.ICON_FA_BINOCULARS
@@ -37,7 +38,7 @@ def draw_layer_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]
     """Draw the menu of the last item, a row. Return also whether rename was chosen."""
     if not imgui.begin_popup_context_item(f"menu of layer {row.key}"):
         return [], False
-    asks = item(_("Rename…"), icons.ICON_FA_PEN, BINDINGS["rename layer"].shown_keys)
+    asks = item(_("Rename…"), icons.ICON_FA_PEN, shown_keys(layer_list.rename_active_layer))
     if row.layer is not None:
         actions = _of_layer(project, row.layer)
     elif row.switch_group is not None:

@@ -4,7 +4,7 @@ from imgui_bundle import imgui
 
 from app.document import subgroups_with_layers, suggest_switch_groups
 from app.editor import Action, Project, Session, do
-from app.editor.actions import playback, viewing
+from app.editor.actions import dialog_actions, playback
 from app.editor.actions.layer_setup import resolving
 from app.editor.layering.switches import create_switch, dismiss_switch_suggestion
 from app.errors import few_notices
@@ -50,7 +50,7 @@ def _summary(look: Look, project: Project) -> list[Action]:
     title = _("Differences: {count}").format(count=count) if count else _("Imported as drawn")
     imgui.set_next_item_open(project.is_import_log_open)
     is_open = imgui.tree_node_ex(f"{title}###summary", _FOLD)
-    actions = [do(viewing.toggle_import_log)] if imgui.is_item_toggled_open() else []
+    actions = [do(dialog_actions.toggle_import_log)] if imgui.is_item_toggled_open() else []
     if not is_open:
         return actions
     for loss in few_notices(summary.warnings):

@@ -5,16 +5,16 @@ from imgui_bundle import ImVec2, imgui
 from app.document import AppliedMotion, is_motion_unedited
 from app.editor import Action, Project, Session, do
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
+from app.editor.tools import move_tool
 from app.editor.work.motion_setup import MotionSetup
 from app.rigging import KINDS, MOTIONS
 from app.texts import _, ngettext
 from app.ui.panels.motion_preset.diagram import draw_body_diagram, draw_joint_diagram
-from app.ui.shortcuts.keys import ALT, format_modified
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import ALT, format_modified, shown_keys
+from app.ui.shortcuts.widgets import draw_action_main_button, draw_action_text_button
 from app.ui.style.sliders import Scale, slider
-from app.ui.style.theme import Look, colour_u32
+from app.ui.style.theme import Look, colour_u32, icon_glyph
 from app.ui.style.widgets import (
-    FILL,
     draw_tooltip,
     heading,
     label,
@@ -57,7 +57,7 @@ def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Ac
     below = (2.0 + 1.5 * lines) * look.em + imgui.get_frame_height()
     imgui.begin_child("draft", ImVec2(0, max(imgui.get_content_region_avail().y - below, 1.0)))
     actions = _kinds(look, draft) + _motions(look, draft)
-    actions += _joints(look, draft) + _parameters(look, draft)
+    actions += _joints(session, look, draft) + _parameters(look, draft)
     imgui.end_child()
     return actions + _end(look, project, draft)
 
@@ -65,7 +65,7 @@ def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Ac
 def _draw_applied_motions(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the layer's applied motions, and the button that sets up another one."""
     actions: list[Action] = []
-    binding, layer = BINDINGS["give motion"], project.layer
+    layer = project.layer
     title = _("Motions of {name}") if layer.motions else _("Motion presets")
     heading(look, title.format(name=layer.name))
     if not layer.motions:
@@ -77,11 +77,7 @@ def _draw_applied_motions(session: Session, look: Look, project: Project) -> lis
         actions += _row(look, project, given)
         imgui.pop_id()
     imgui.dummy(ImVec2(0, 0.3 * look.em))
-    reason = binding.disabled_reason(session)
-    if main_button(look, f"{binding.icon}  {binding.label}", FILL, enabled=not reason):
-        actions.append(binding.action)
-    draw_tooltip(reason or binding.hint, binding.shown_keys)
-    return actions
+    return actions + draw_action_main_button(session, look, preset_setup.begin_motion_setup)
 
 
 def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
@@ -123,7 +119,7 @@ def _kinds(look: Look, draft: MotionSetup) -> list[Action]:
     return actions
 
 
-def _joints(look: Look, draft: MotionSetup) -> list[Action]:
+def _joints(session: Session, look: Look, draft: MotionSetup) -> list[Action]:
     heading(look, _("Joints"))
     if not draft.body_kind.parents:
         small_text(look, _("The drawing moves as a whole. It has no joints."))
@@ -140,21 +136,18 @@ def _joints(look: Look, draft: MotionSetup) -> list[Action]:
     has_sides = draft.kind == "biped-front"
     widths = split_line(1 + has_sides)
     if has_sides:
-        binding = BINDINGS["mirror joints"]
+        spec = joint_placement.mirror_joints
         way = (
             _("Mirror left to right")
             if joint_placement.mirrored_side(draft) == "L"
             else _("Mirror right to left")
         )
-        text = f"{binding.icon}  {way}###mirror joints"
+        text = f"{icon_glyph(spec.icon)}  {way}###mirror joints"
         hint = _("{hint}: from the side that you dragged last")
-        hint = hint.format(hint=binding.hint)
+        hint = hint.format(hint=spec.hint)
         if text_button(text, next(widths), hint, enabled=bool(draft.joints)):
-            actions.append(binding.action)
-    binding = BINDINGS["find joints"]
-    if text_button(f"{binding.icon}  {_('Detect joints')}", next(widths), binding.hint):
-        actions.append(binding.action)
-    return actions
+            actions.append(spec.action)
+    return actions + draw_action_text_button(session, joint_placement.reset_joints, next(widths))
 
 
 def _motions(look: Look, draft: MotionSetup) -> list[Action]:
@@ -254,7 +247,9 @@ def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
     if main_button(look, _("Apply") + "###give", next(widths), enabled=not reason):
         actions.append(do(apply_motion.apply_motion_preset))
     draw_tooltip(reason or _("Set the keys and play the motion. One undo removes them."))
-    if text_button(_("Cancel") + "###no motion", next(widths), "", BINDINGS["pose"].shown_keys):
+    if text_button(
+        _("Cancel") + "###no motion", next(widths), "", shown_keys(move_tool.return_to_posing)
+    ):
         actions.append(do(preset_setup.close_motion_setup))
     return actions
 

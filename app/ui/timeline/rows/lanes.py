@@ -18,7 +18,7 @@ from app.editor.actions import editing
 from app.editor.actions.timing import timeline_drag
 from app.texts import _, ngettext
 from app.ui.shortcuts.keys import CTRL, format_modified
-from app.ui.style.theme import CHOSEN, SMALL, colour_u32
+from app.ui.style.theme import CHOSEN, SMALL, colour_u32, icon_glyph
 from app.ui.style.values import format_value, label_value
 from app.ui.style.widgets import (
     begin_tooltip,
@@ -125,8 +125,7 @@ def _draw_name(bands: TimelineLayout, lane: ChannelLane) -> list[Action]:
 def _icon(lane: ChannelLane) -> str:
     if lane.track is not None:
         return icons.ICON_FA_THUMBTACK if lane.track.is_scene_space else icons.ICON_FA_ROUTE
-    icon: str = getattr(icons, f"ICON_FA_{lane.channel.kind.icon}")
-    return icon
+    return icon_glyph(lane.channel.kind.icon)
 
 
 def _draw_switch(

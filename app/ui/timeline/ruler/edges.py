@@ -5,7 +5,7 @@ from imgui_bundle import ImVec2, imgui
 from app.editor import Action, Edge, EdgeDrag, do
 from app.editor.actions.timing import keys, timeline_drag
 from app.texts import _
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import shown_keys
 from app.ui.style.theme import colour_u32
 from app.ui.style.widgets import draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.timeline.layout import PREVIEW, TimelineLayout, draw_time_tag
@@ -66,7 +66,9 @@ def _clear(bands: TimelineLayout, left: float, right: float) -> list[Action]:
     for side in (-1, 1):
         start, end = ImVec2(x - half, y - side * half), ImVec2(x + half, y + side * half)
         draw_list.add_line(start, end, colour, 0.12 * em)
-    draw_tooltip(_("Clear the preview range: play all frames"), BINDINGS["preview none"].shown_keys)
+    draw_tooltip(
+        _("Clear the preview range: play all frames"), shown_keys(keys.clear_preview_range)
+    )
     return [do(keys.clear_preview_range)] if clicked else []
 
 

@@ -116,8 +116,8 @@ def _menu(bands: TimelineLayout, marker: Marker) -> list[Action]:
         if imgui.menu_item_simple(_("Delete")):
             actions.append(do(keys.delete_marker, marker.frame))
         imgui.separator()
-        for name in ("previous marker", "next marker"):
-            actions += draw_action_item(bands.session, name)
+        for spec in (playback.PREVIOUS_MARKER, playback.NEXT_MARKER):
+            actions += draw_action_item(bands.session, spec)
         imgui.end_popup()
     if asks:
         imgui.open_popup(f"name of marker {marker.frame}")

@@ -5,13 +5,15 @@ from functools import reduce
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Hint, Project, Session
-from app.editor.actions import tutorials
+from app.editor.actions import tutorials, viewing
+from app.editor.actions.action_spec import ActionSpec
+from app.editor.actions.posing.motion_presets import apply_motion
+from app.editor.actions.timing import keys
+from app.editor.tools import move_tool
 from app.editor.tools.table import tools_of
 from app.editor.tools.tool import PointerHit
 from app.texts import _
-from app.ui.shortcuts.action_spec import ActionSpec
-from app.ui.shortcuts.keys import ALT, CTRL, SHIFT, format_modified
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import ALT, CTRL, SHIFT, format_modified, shown_keys
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import draw_tooltip
 from app.ui.viewport.marks import find_auto_pinned
@@ -33,9 +35,7 @@ def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
     if session.cutting is None and project.playhead.since is not None:
         return _("Space stops")
     if session.is_posing and not session.overlays.handles:
-        return _("The handles are hidden: {key} shows them").format(
-            key=BINDINGS["handles"].shown_keys
-        )
+        return _("The handles are hidden: {key} shows them").format(key=shown_keys(viewing.HANDLES))
     hints = [
         _format_hint(hint)
         for tool in tools_of(session)
@@ -76,13 +76,13 @@ def draw_badges(
     """Draw special states: a pose without a key, the active tool, or the next step."""
     top = corner + ImVec2(room.x / 2, look.em)
     if project.unkeyed_pose is not None:
-        return _draw_pill(look, _("Unkeyed pose"), top, BINDINGS["insert key"])
+        return _draw_pill(look, _("Unkeyed pose"), top, keys.insert_key_in_row)
     mode = _mode(session, project)
     if mode:
         return draw_mode_badge(look, mode, corner, room)
     if project.motion_job is not None:
         text = _("{step}: {keys} cancels the motion preset").format(
-            step=project.motion_job.step_label, keys=BINDINGS["no motion"].shown_keys
+            step=project.motion_job.step_label, keys=shown_keys(apply_motion.cancel_motion_job)
         )
         return _draw_pill(look, text, top)
     step = find_first_step(project)
@@ -104,7 +104,7 @@ def _mode(session: Session, project: Project) -> str:
 
 def draw_mode_badge(look: Look, mode: str, corner: ImVec2, room: ImVec2) -> list[Action]:
     """Draw the badge of the active tool, with the button that ends it."""
-    keys = BINDINGS["pose"].shown_keys
+    keys = shown_keys(move_tool.return_to_posing)
     place = corner + ImVec2(room.x / 2, look.em)
     text = _("{mode}: {keys} goes back to posing").format(mode=mode, keys=keys)
     return _draw_pill(look, text, place)
@@ -145,5 +145,5 @@ def _draw_pill(
     imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))
     is_pressed = imgui.button(remedy.label, ImVec2(beside, slim))
     imgui.pop_style_var(2)
-    draw_tooltip(remedy.hint, remedy.shown_keys)
+    draw_tooltip(remedy.hint, shown_keys(remedy))
     return [remedy.action] if is_pressed else []

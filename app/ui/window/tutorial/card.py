@@ -7,7 +7,7 @@ from app.editor import Action, Session, TutorialStage, TutorialState, do
 from app.editor.actions import tutorials
 from app.editor.actions.project_files import exporting
 from app.texts import _, ngettext
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import shown_keys
 from app.ui.style.theme import SMALL, Look, colour_u32
 from app.ui.style.widgets import draw_tooltip, main_button, push_text_size
 from app.ui.viewport.screen import ScreenMapping
@@ -148,7 +148,7 @@ def _contents(session: Session, look: Look, guide: TutorialState, text: str) -> 
     imgui.same_line(imgui.get_cursor_start_pos().x + width - button)
     if imgui.button(f"{words}###leave"):
         actions.append(do(tutorials.end_tutorial))
-    draw_tooltip(_("End the guide. Your work stays."), BINDINGS["leave guide"].shown_keys)
+    draw_tooltip(_("End the guide. Your work stays."), shown_keys(tutorials.end_tutorial))
     return actions
 
 

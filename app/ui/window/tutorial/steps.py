@@ -6,11 +6,13 @@ from typing import NamedTuple
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Project, Session, TutorialState
-from app.editor.actions import tutorials
+from app.editor.actions import playback, tutorials, viewing
 from app.editor.actions.project_files import exporting
+from app.editor.actions.timing import keys
+from app.editor.tools import move_tool
 from app.texts import _
 from app.ui.panel import is_in_front
-from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.keys import shown_keys
 from app.ui.style.theme import Look
 from app.ui.viewport.screen import ScreenMapping
 from app.ui.window.tutorial.layout import Rect
@@ -66,7 +68,7 @@ def _to_step(
         case "pose":
             return _to_pose(look, guide, screen, places)
         case "play":
-            keys = BINDINGS["play"].shown_keys
+            keys = shown_keys(playback.toggle_play)
             return TutorialStep(
                 _(
                     "Click here, or press {keys}: Lissom fills in the motion between the poses."
@@ -90,11 +92,11 @@ def _hindrance(session: Session) -> str:
     """Return the step that must come before handles can be added and dragged; else ""."""
     if not session.is_posing:
         return _("Another tool is active: {keys} goes back to posing.").format(
-            keys=BINDINGS["pose"].shown_keys
+            keys=shown_keys(move_tool.return_to_posing)
         )
     if not session.overlays.handles:
         return _("The handles are hidden: {key} shows them.").format(
-            key=BINDINGS["handles"].shown_keys
+            key=shown_keys(viewing.HANDLES)
         )
     return ""
 
@@ -118,11 +120,11 @@ def _to_pose(
     look: Look, guide: TutorialState, screen: ScreenMapping, places: Places
 ) -> TutorialStep:
     if screen.project.unkeyed_pose is not None:
-        insert = BINDINGS["insert key"]
+        insert = keys.insert_key_in_row
         return TutorialStep(
             _(
                 "Auto-key is off, so this pose has no key. Press {keys} ({action}) to set a key."
-            ).format(action=insert.label, keys=insert.shown_keys),
+            ).format(action=insert.label, keys=shown_keys(insert)),
             _box(places, "insert key"),
         )
     layer, handles = screen.shown.clip.layer, screen.shown.handle_positions

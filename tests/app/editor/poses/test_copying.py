@@ -14,7 +14,7 @@ from app.document.commands import handle_commands, shape_commands
 from app.document.settings import NATURAL
 from app.editor.actions import editing
 from app.editor.actions.posing.pose_drag import nudge_handles
-from app.editor.poses import copying, pasting
+from app.editor.poses import copying, pasting, pasting_targets
 from app.storage import Preferences
 from engine.maps import Boundary, certify
 
@@ -78,9 +78,11 @@ def test_only_the_selected_handles_take_what_was_copied(session):
     copying.copy_pose_or_keys(session)
     bent = project.layer.key(6).pose.targets
     go(session, 0)
-    assert "Select" in pasting.paste_on_selected_disabled_reason(session, project, "as it is")
+    assert "Select" in pasting_targets.paste_on_selected_disabled_reason(
+        session, project, "as it is"
+    )
     editing.select_handles(session, frozenset({1}))
-    pasting.paste_on_selected(session)
+    pasting_targets.paste_on_selected(session)
     settle(session)
     targets = project.layer.key(0).pose.targets
     assert targets[1].position == bent[1].position

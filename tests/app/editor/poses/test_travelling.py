@@ -32,7 +32,7 @@ from app.editor.layering.layer_list import rename_layer
 from app.editor.layering.layer_selection import select_layers, set_active_layer
 from app.editor.layering.pictures import make_still
 from app.editor.parts.clipboard import CopiedKeys
-from app.editor.poses import copying, library, paste_destinations, pasting
+from app.editor.poses import copying, library, paste_destinations, pasting, pasting_targets
 from app.editor.poses.paste_destinations import NOTHING_COPIED
 from app.editor.poses.pasting import NOT_PASTED
 
@@ -155,7 +155,7 @@ def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(sessio
     settle(session)
     before = project.document
     go(session, 12)
-    assert pasting.paste_disabled_reason(session, project, SWAPPED) == ""
+    assert pasting.paste_disabled_reason(session, project, SWAPPED) is None
     pasting.paste_copied(session, SWAPPED)
     settle(session)
     near, far = near_and_far(session, 12)
@@ -229,7 +229,7 @@ def test_words_for_sides_are_edited_and_whole_names_are_partners(session):
     settle(session)
     assert project.document is before
     pasting.set_mirror_names(session, "L/R, Spielbein/Standbein")
-    assert pasting.paste_disabled_reason(session, project, SWAPPED) == ""
+    assert pasting.paste_disabled_reason(session, project, SWAPPED) is None
     pasting.paste_copied(session, SWAPPED)
     settle(session)
     close(ways(session, "Standbein", 12), ways(session, "Spielbein", 0))
@@ -319,7 +319,7 @@ def test_selected_handles_alone_take_over_from_another_layer(session):
     go(session, 0)
     foot = next(each.id for each in session.project.layer.handles if each.name == "foot")
     editing.select_handles(session, frozenset({foot}))
-    pasting.paste_on_selected(session)
+    pasting_targets.paste_on_selected(session)
     settle(session)
     now, was = ways(session, "far leg", 0), ways(session, "near leg", 0)
     assert now["foot"] == pytest.approx(was["foot"], abs=1e-6)

@@ -8,6 +8,7 @@ from app.document import RUBBERY, Command, Document
 from app.editor import pending_changes
 from app.editor.action import do
 from app.editor.actions import playback
+from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
@@ -189,6 +190,14 @@ def apply_motion_at_size(
     )
 
 
+@named_action(
+    "no motion",
+    _("Cancel motion preset"),
+    "Escape",
+    why_disabled=unless(
+        lambda _, project: project.motion_job, _("No motion preset is being applied.")
+    ),
+)
 @with_project
 def cancel_motion_job(session: Session, project: Project) -> None:
     """Cancel the pending motion; its draft opens again."""

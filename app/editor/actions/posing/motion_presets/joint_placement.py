@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from app.document import Layer
+from app.editor.actions.action_spec import named_action, unless
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.motion_setup import MotionSetup
@@ -96,12 +97,34 @@ def include_joint(session: Session, project: Project, name: str) -> None:
         move_joint(session, name, _beside(draft, name) if place is None else place)
 
 
+@named_action(
+    "find joints",
+    _("Detect joints"),
+    icon="WAND_MAGIC_SPARKLES",
+    hint=_("Move all joints back to where they were detected"),
+    why_disabled=unless(
+        lambda _, project: project.motion_setup is not None and project.motion_setup.suggested,
+        _("Choose a motion preset for a body with joints first."),
+    ),
+)
 @with_project
 def reset_joints(_: Session, project: Project) -> None:
     if project.motion_setup is not None:
         project.motion_setup = project.motion_setup.with_joints(project.motion_setup.suggested)
 
 
+@named_action(
+    "mirror joints",
+    _("Mirror joints"),
+    icon="LEFT_RIGHT",
+    hint=_("Mirror the joints of one side to the other side"),
+    why_disabled=unless(
+        lambda _, project: (
+            project.motion_setup is not None and project.motion_setup.kind == "biped-front"
+        ),
+        _("Choose a motion preset for a body seen from the front first."),
+    ),
+)
 @with_project
 def mirror_joints(session: Session, project: Project) -> None:
     """Mirror the joints of one side to the other side.

@@ -6,6 +6,7 @@ from typing import Any
 
 from app.document import AppliedMotion, Layer, is_motion_unedited
 from app.editor.actions import playback
+from app.editor.actions.action_spec import named_action
 from app.editor.actions.posing.motion_presets.joint_placement import find_joints
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -18,8 +19,8 @@ PANEL = "Motion"
 LINKS = 6
 
 
-def motion_disabled_reason(_session: Session, project: Project) -> str:
-    """Return why the active layer cannot get a motion; empty if it can."""
+def motion_disabled_reason(_session: Session, project: Project) -> str | None:
+    """Return why the active layer cannot get a motion; None if it can."""
     layer = project.layer
     if layer.still:
         text = _("{layer} is a still picture. Make it posable first.")
@@ -27,9 +28,18 @@ def motion_disabled_reason(_session: Session, project: Project) -> str:
     if layer.locked:
         text = _("{layer} is locked. Unlock it in the Layers tab first.")
         return text.format(layer=layer.name)
-    return ""
+    return None
 
 
+@named_action(
+    "give motion",
+    _("Apply motion preset…"),
+    "A",
+    icon="PERSON_WALKING",
+    hint=_("Make the layer walk, wave or breathe: place its joints and choose a motion"),
+    why_disabled=motion_disabled_reason,
+    active=lambda session: session.project is not None and session.project.motion_setup,
+)
 @with_project
 def begin_motion_setup(session: Session, project: Project) -> None:
     """Draft a motion for the active layer: its motion at this frame, or a new one.
@@ -206,8 +216,8 @@ def is_applied_motion_edited(project: Project) -> bool:
     )
 
 
-def apply_motion_disabled_reason(project: Project) -> str:
-    """Return why the draft cannot be applied; empty if it can."""
+def apply_motion_disabled_reason(project: Project) -> str | None:
+    """Return why the draft cannot be applied; None if it can."""
     draft = project.motion_setup
     if draft is None:
         return _("There is no motion to apply.")
@@ -221,7 +231,7 @@ def apply_motion_disabled_reason(project: Project) -> str:
         return text.format(motion=draft.preset.label, joints=missing)
     if is_applied_motion_edited(project) and not draft.replaces_edits:
         return _("You edited the motion by hand. Applying it again would delete your edits.")
-    return ""
+    return None
 
 
 @with_project

@@ -1,0 +1,124 @@
+"""Dialogs, notices, the manual and the import log: shown, answered and closed."""
+
+import os
+import webbrowser
+from pathlib import Path
+
+from app.editor import error_reports
+from app.editor.action import Action, do
+from app.editor.actions.action_spec import ActionSpec, named_action, unless
+from app.editor.parts.dialogs import Dialog, FileDialog, ShortcutSheet
+from app.editor.parts.notices import Toast
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.errors import ImportLog, LissomError
+from app.storage import manual_page
+from app.texts import _, ngettext
+
+
+def show_dialog(session: Session, dialog: Dialog) -> None:
+    """Open a dialog in place of the open one."""
+    session.dialogs.show(dialog)
+
+
+def browse_files(session: Session, dialog: FileDialog) -> None:
+    """Set the state of the open file browser."""
+    session.dialogs.show(dialog)
+
+
+def choose_file(session: Session, dialog: FileDialog, path: Path) -> None:
+    """Give a path to the file dialog's action; the next file dialog opens in its folder."""
+    session.dialogs.close()
+    session.settings.prefer(folder=path.parent)
+    dialog.chosen(path).apply(session)
+
+
+def use_own_file_browser(session: Session) -> None:
+    """From now on, use Lissom's file browser instead of the system's dialogs."""
+    session.dialogs.use_own_file_browser()
+
+
+@named_action("shortcuts", _("Keys and mouse"), "Shift+F1", needs_project=False)
+def show_shortcuts(session: Session) -> None:
+    session.dialogs.show(ShortcutSheet())
+
+
+REPORT = ActionSpec(
+    do(error_reports.show_kept_or_new_report), "report", _("Report a problem…"), needs_project=False
+)
+
+
+def open_manual(session: Session, page: str) -> None:
+    """Show a page of the manual in the browser, and show its address in a notice.
+
+    Terminal browsers are skipped, since they would block the window, unless BROWSER names one.
+    """
+    path = manual_page(page)
+    try:
+        browser = webbrowser.get()
+        is_apart = type(browser) is not webbrowser.GenericBrowser or "BROWSER" in os.environ
+        is_open = is_apart and browser.open(path.as_uri())
+    except (webbrowser.Error, OSError):
+        is_open = False
+    if not is_open:
+        raise LissomError(_("no browser was found; the manual is {path}").format(path=path))
+    # The program that starts the browser may fail later, without an error here.
+    text = _("The manual opens in the browser. Its file is {path}.")
+    session.notices.show(text.format(path=path), topic="manual")
+
+
+def close_dialog(session: Session) -> None:
+    """Close the dialog without an action; the dialog below a report returns."""
+    session.dialogs.close()
+
+
+def answer_dialog(session: Session, action: Action) -> None:
+    """Close the dialog and run the chosen action."""
+    session.dialogs.close()
+    action.apply(session)
+
+
+def show_notice(session: Session, text: str) -> None:
+    session.notices.show(text)
+
+
+def dismiss_toast(session: Session, toast: Toast) -> None:
+    session.notices.dismiss(toast)
+
+
+def show_import_notice(session: Session, project: Project, summary: ImportLog) -> None:
+    """Show a notice about effects of a drawing that its import lost."""
+    if not summary.warnings:
+        return
+    project.is_import_log_open = True
+    count = len(summary.warnings)
+    session.notices.show(
+        ngettext(
+            "One thing looks different here. See the Layers tab.",
+            "{count} things look different here. See the Layers tab.",
+            count,
+        ).format(count=count),
+        topic="import",
+        label=_("Show"),
+        action=do(show_import_log),
+    )
+
+
+@named_action(
+    "import",
+    _("Import log"),
+    why_disabled=unless(
+        lambda _, project: project.document.import_log, _("There is nothing in the import log.")
+    ),
+)
+@with_project
+def show_import_log(session: Session, project: Project) -> None:
+    """Show the import log in the panel of layers."""
+    project.is_import_log_open = True
+    session.panel_to_focus = "Layers"
+
+
+@with_project
+def toggle_import_log(_: Session, project: Project) -> None:
+    """Show or hide the import log in the panel of layers."""
+    project.is_import_log_open = not project.is_import_log_open

@@ -1,0 +1,80 @@
+"""Pasting the targets of a copied pose on selected handles."""
+
+from collections.abc import Mapping
+from functools import partial
+
+from app.document import Keyframe, Target
+from app.editor.action import do
+from app.editor.actions.action_spec import ActionSpec, named_action
+from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.poses import pose_insertion
+from app.editor.poses.paste_destinations import (
+    PasteDestination,
+    PasteMode,
+    find_active_paste_destination,
+    paste_keys_disabled_reason,
+)
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.solving import flip_targets
+from app.texts import _
+
+
+def paste_on_selected_disabled_reason(
+    session: Session, project: Project, way: PasteMode
+) -> str | None:
+    """Return why nothing can be pasted on the selected handles; None if it can."""
+    landing = find_active_paste_destination(session, project, way)
+    if landing is None:
+        return paste_keys_disabled_reason(session, project, way) or _(
+            "Select a copied layer first."
+        )
+    if not project.selected_handles:
+        return _("Select the handles to paste on first.")
+    return landing.disabled_reason
+
+
+@named_action(
+    "paste on selected",
+    _("Paste on selected handles"),
+    "Ctrl+Alt+V",
+    why_disabled=partial(paste_on_selected_disabled_reason, way="as it is"),
+)
+@with_project
+def paste_on_selected(session: Session, project: Project, way: PasteMode = "as it is") -> None:
+    """Move the selected handles to the copied places of themselves or of their partners."""
+    if not paste_on_selected_disabled_reason(session, project, way):
+        landing = find_active_paste_destination(session, project, way)
+        if landing is not None:
+            targets = pasted_targets(project, landing, way)
+            set_targets(session, {i: targets[i] for i in project.selected_handles if i in targets})
+
+
+FLIP_ON_SELECTED = ActionSpec(
+    do(paste_on_selected, "flipped"),
+    "flip on selected",
+    _("Paste flipped on selected"),
+    "Ctrl+Alt+Shift+V",
+    why_disabled=partial(paste_on_selected_disabled_reason, way="flipped"),
+)
+
+
+def pasted_targets(
+    project: Project, landing: PasteDestination, way: PasteMode
+) -> Mapping[int, Target]:
+    """Return the targets of a layer's handles from the first copied key, by id."""
+    if landing.is_own:
+        pose, layer = fit_copied_keys(project, landing)[0].pose, landing.layer
+        if way == "flipped":
+            return flip_targets(layer, pose, layer.axis, project.document.pairs)
+        if landing.is_direct(way):
+            return pose.targets
+    return landing.pose_transfer(way).transfer_targets(landing.layer, landing.copied.keys[0].pose)
+
+
+def fit_copied_keys(project: Project, landing: PasteDestination) -> list[Keyframe]:
+    """Return the copied keys with poses within the limits of the layer that takes them."""
+    copied = landing.copied
+    return pose_insertion.fit_keys_to_layer(
+        project, landing.layer.id, copied.keys, copied.layer.bounds
+    )
