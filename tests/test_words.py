@@ -26,7 +26,7 @@ REPLACED_LONG = {
     "app/document/model.py",
     "app/editor/actions/frame_update.py",
     "app/editor/project.py",
-    "app/editor/work/pull.py",
+    "app/editor/work/drag_session.py",
     "app/motion/inbetween_cache.py",
     "app/motion/inbetweens/pose_sampler.py",
     "app/solving/drag_solver.py",

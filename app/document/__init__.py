@@ -75,9 +75,7 @@ from app.document.commands.layers import (
     switch_group_commands as switch_group_commands,
 )
 from app.document.commands.pose_commands import (
-    PoseReplacement as PoseReplacement,
     with_all_targets as with_all_targets,
-    with_replaced_pose as with_replaced_pose,
 )
 from app.document.history import History as History, PreviewPose as PreviewPose
 from app.document.keyframe import (

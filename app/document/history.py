@@ -1,13 +1,10 @@
 """Undo and redo, as frozen snapshots of the document that share unchanged values."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from app.document.commands.command import Command
-from app.document.commands.pose_commands import (
-    PoseReplacement,
-    with_all_targets,
-    with_replaced_pose,
-)
+from app.document.commands.pose_commands import with_all_targets
 from app.document.keyframe import Pose
 from app.document.layer import Layer, PictureFile
 from app.document.model import Document
@@ -52,6 +49,9 @@ class History:
         self._undone: list[UndoStep] = []
         self._saved = document if saved else None
         self._memory = memory
+        # Called once before the next change of the steps: it commits a drag that is displayed but
+        # not yet a step.
+        self.before_change: Callable[[], None] | None = None
 
     @property
     def document(self) -> Document:
@@ -106,45 +106,25 @@ class History:
         end with the document before the gesture. Raises a `LissomError` if the command is not
         possible. The history is then unchanged.
         """
+        if self.before_change is not None and command(self.document) is self.document:
+            return
+        self._commit_preview()
         document = command(self.document)
         unkeyed = _fitting(self.preview_pose, self.document, document)
         self._go_on(UndoStep(document, unkeyed, command.label, gesture))
 
     def set_preview_pose(self, unkeyed: PreviewPose | None, *, gesture: object = None) -> None:
         """Replace or remove the unkeyed pose, as an undo step."""
+        self._commit_preview()
         self._go_on(UndoStep(self.document, unkeyed, "Pose", gesture))
 
     def extend_step(self, command: Command) -> None:
         """Run a command in the last step and remove the unkeyed pose; redo stays possible."""
+        self._commit_preview()
         step = self._steps[self._now]
         document = command(step.document)
         if document is not step.document:
             self._put(self._now, replace(step, document=document, preview_pose=None))
-
-    def amend(self, gesture: object, old: Pose, new: PoseReplacement) -> bool:
-        """Replace the pose of a gesture in its step and in all later steps, redo steps included.
-
-        All poses with the same map are replaced: in keys, in copies of keys, in the library, and
-        the unkeyed pose. `new` returns a layer's new pose for a pose with the map of `old`. The
-        result is False if the step of the gesture was dropped or overwritten.
-        """
-        indices = range(len(self._steps))
-        begun = next((i for i in indices if self._steps[i].gesture is gesture), None)
-        if begun is None:
-            return False
-        changed: dict[Layer, Layer] = {}
-        for index in indices[begun:]:
-            step = self._steps[index]
-            document, unkeyed = (
-                with_replaced_pose(step.document, old, new, changed),
-                step.preview_pose,
-            )
-            for layer in document.layers:
-                if unkeyed and unkeyed.layer == layer.id and unkeyed.pose.phi is old.phi:
-                    unkeyed = replace(unkeyed, pose=new(layer, unkeyed.pose))
-            if document is not step.document or unkeyed is not step.preview_pose:
-                self._put(index, replace(step, document=document, preview_pose=unkeyed))
-        return True
 
     def revert(self, gesture: object) -> None:
         """Remove the last step if the gesture made it, and restore the replaced redo steps."""
@@ -160,6 +140,7 @@ class History:
 
     def undo(self) -> None:
         """Go back one step, to the same document object, if possible."""
+        self._commit_preview()
         if self._now:
             self.revision += 1
             self._now -= 1
@@ -168,8 +149,15 @@ class History:
     def redo(self) -> None:
         """Go forward one step, if possible."""
         if self._now + 1 < len(self._steps):
+            self._commit_preview()
+        if self._now + 1 < len(self._steps):
             self.revision += 1
             self._now += 1
+
+    def _commit_preview(self) -> None:
+        commit, self.before_change = self.before_change, None
+        if commit is not None:
+            commit()
 
     def _put(self, index: int, step: UndoStep) -> None:
         self.revision += 1

@@ -10,13 +10,12 @@ from functools import partial
 from math import inf
 from typing import TypeVar
 
-from app.editor.action import Action
+from app.editor.action import Action, do
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import Job, JobKind
 from app.editor.work.pending_change import DeferredAction, PendingChange
-from app.editor.work.pull import Pull
 from app.texts import _
 
 Result = TypeVar("Result")
@@ -46,7 +45,11 @@ def begin_pending_change(
 
     def arrived(result: Result) -> None:
         if _end_pending_change(session, project, pending):
-            done(result)
+            if project.drag is None or not pending.changes:
+                done(result)
+            else:
+                # The drag goes on under the hand.
+                run_when_idle(session, do(_call, done, result), pending.label)
 
     def lost(error: Exception) -> None:
         if _end_pending_change(session, project, pending):
@@ -54,6 +57,10 @@ def begin_pending_change(
 
     session.jobs.add(Job(kind=kind, work=work, done=arrived, failed=lost))
     return pending
+
+
+def _call(_: Session, done: Callable[[Result], None], result: Result) -> None:
+    done(result)
 
 
 def _end_pending_change(session: Session, project: Project, change: PendingChange) -> bool:
@@ -72,13 +79,7 @@ def is_document_idle(project: Project, *, after_saves: bool = False) -> bool:
     if project.stale_layer is not None:
         return False
 
-    def is_over(change: PendingChange) -> bool:
-        if isinstance(change, Pull):
-            # An undone drag is solved on only in case it is redone.
-            return change.is_settled or not change.is_in(project.history)
-        return not (change.changes or after_saves)
-
-    return all(map(is_over, project.pending))
+    return not any(change.changes or after_saves for change in project.pending)
 
 
 @with_project

@@ -25,6 +25,7 @@ from app.document import (
     PictureFile,
     Playhead,
     Pose,
+    PreviewPose,
     TreeRow,
     Variant,
     camera_at,
@@ -40,10 +41,10 @@ from app.editor.parts.export_state import ExportDestinations
 from app.editor.parts.project_file import ProjectFile
 from app.editor.parts.timeline import TimelineState
 from app.editor.work.derived import Derived
+from app.editor.work.drag_session import DragSession, StoppedDrag
 from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime
 from app.editor.work.motion_setup import MotionJob, MotionSetup
 from app.editor.work.pending_change import DeferredAction, PendingChange
-from app.editor.work.pull import Pull
 from app.editor.work.revised import Revised
 from app.editor.work.track_drag import Recording, TrackDrag
 from app.motion import (
@@ -111,6 +112,9 @@ class Project(Revised):
     # The inputs of the shown frame at its last update.
     settled: tuple[object, ...] = ()
     deferred: list[DeferredAction] = field(default_factory=list)  # in the order of the requests
+    # The gesture of a held drag that another change of the document ended; it changes no more.
+    ended_gesture: object = None
+    stopped_drag: StoppedDrag | None = None  # to be shown in a notice
     # Commands of one gesture, a single use of a widget, are one undo step.
     gesture: object | None = None
     used_widget: int = 0
@@ -168,7 +172,9 @@ class Project(Revised):
 
     @property
     def document(self) -> Document:
-        return self.history.document
+        """The document as displayed: with the preview of an unfinished drag."""
+        document, drag = self.history.document, self.drag
+        return document if drag is None else drag.applied_to(document)
 
     @property
     def layer(self) -> Layer:
@@ -295,18 +301,27 @@ class Project(Revised):
         ]
 
     @property
+    def preview_pose(self) -> PreviewPose | None:
+        """The unkeyed pose as displayed, if any."""
+        drag = self.drag
+        if drag is None or drag.is_keyed or drag.preview is None:
+            return self.history.preview_pose
+        return PreviewPose(layer=drag.layer, frame=drag.frame, pose=drag.preview)
+
+    @property
     def unkeyed_pose(self) -> Pose | None:
         """The unkeyed pose of the active layer at this frame, if any."""
-        unkeyed = self.history.preview_pose
+        unkeyed = self.preview_pose
         if unkeyed is None or unkeyed.layer != self.active or self.playhead.since is not None:
             return None
         here = self.layer.source_of(self.playhead.frame)
         return unkeyed.pose if unkeyed.frame == here else None
 
     @property
-    def pulls(self) -> list[Pull]:
-        """The unfinished pose drags, oldest first."""
-        return [change for change in self.pending if isinstance(change, Pull)]
+    def drag(self) -> DragSession | None:
+        """The unfinished drag of a pose."""
+        drags = (change for change in self.pending if isinstance(change, DragSession))
+        return next(drags, None)
 
     @property
     def track_drags(self) -> list[TrackDrag]:
@@ -314,18 +329,13 @@ class Project(Revised):
         return [change for change in self.pending if isinstance(change, TrackDrag)]
 
     @property
-    def pull(self) -> Pull | None:
-        """The unfinished pose drag that is shown, of the active layer."""
-        if self.playhead.since is not None:
+    def visible_drag(self) -> DragSession | None:
+        """The unfinished drag if its pose is the active layer's at the playhead."""
+        drag = self.drag
+        if drag is None or self.playhead.since is not None:
             return None
         here = (self.active, self.layer.source_of(self.playhead.frame))
-        mine = [pull for pull in self.pulls if (pull.layer, pull.frame) == here]
-        return mine[-1] if mine else None
-
-    @property
-    def is_posing(self) -> bool:
-        """Whether the document has an unfinished pose, or will get one."""
-        return any(pull.is_in(self.history) for pull in self.pulls)
+        return drag if (drag.layer, drag.frame) == here else None
 
     @property
     def key_resolver(self) -> KeyResolver | None:

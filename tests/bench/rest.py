@@ -8,7 +8,7 @@ from statistics import mean
 import numpy as np
 
 from app.document import Layer, Target
-from app.editor.work.pull import DragStart
+from app.editor.work.drag_session import DragStart
 from app.solving import DragSolver, Rig
 from app.storage import load_project, sample_images
 from engine.deform import BoundedPull

@@ -248,7 +248,7 @@ def _shows(project: Project, frame: int, *, exactly: bool = False) -> bool:
 
 
 def _rests(project: Project) -> bool:
-    return not project.pulls
+    return project.drag is None
 
 
 def _is_exact(project: Project) -> bool:

@@ -212,8 +212,9 @@ class Harness:
         for _ in range(MOST_FRAMES):
             self.frames()
             project = self.session.project
-            pulls = project.pulls if project else []
-            if not self.session.jobs.kinds and all(pull.is_settled for pull in pulls):
+            drag = project.drag if project else None
+            is_at_rest = drag is None or (drag.is_held and drag.is_at_rest)
+            if not self.session.jobs.kinds and is_at_rest:
                 break
             assert self.session.jobs.wait_until_idle(PATIENCE), self.session.jobs.kinds
         self.frames()

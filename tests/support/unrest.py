@@ -14,11 +14,9 @@ def unrest(session: Session) -> str:
     if project is None:
         return "\n".join(lines)
     lines += [f"on its way: {each.label!r} ({type(each).__name__})" for each in project.pending]
-    lines += [
-        f"pull: layer {pull.layer}, frame {pull.frame}, held {pull.is_held}, left {pull.is_left},"
-        f" settled {pull.is_settled}, in history {pull.is_in(project.history)}"
-        for pull in project.pulls
-    ]
+    drag = project.drag
+    if drag is not None:
+        lines.append(f"drag: layer {drag.layer}, frame {drag.frame}, held {drag.is_held}")
     lines += [f"waits until nothing is on its way: {each.what!r}" for each in project.deferred]
     if project.stale_layer is not None:
         lines.append(f"waits for a mesh: {project.stale_layer.name!r}")

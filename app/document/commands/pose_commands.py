@@ -1,6 +1,5 @@
 """Commands on a layer's pose library, and on the mirror axis of poses."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -8,11 +7,7 @@ import numpy as np
 from app.document.commands.command import layer_command, with_number
 from app.document.keyframe import LibraryPose, Pose, Target
 from app.document.layer import Layer
-from app.document.model import Document
 from app.texts import _
-
-# For a layer and its pose: the pose that replaces it.
-PoseReplacement = Callable[[Layer, Pose], Pose]
 
 
 @layer_command(_("Save pose"))
@@ -44,23 +39,6 @@ def delete_pose(layer: Layer, name: str) -> Layer:
 def set_mirror(layer: Layer, mirror: float | None) -> Layer:
     """Set the vertical mirror axis of poses; None takes the default axis."""
     return layer if mirror == layer.mirror else replace(layer, mirror=mirror)
-
-
-def with_replaced_pose(
-    document: Document, old: Pose, new: PoseReplacement, known: dict[Layer, Layer] | None = None
-) -> Document:
-    """Return a document in which a new pose replaces every pose with the map of `old`.
-
-    `known` keeps the changed layers, so that layers shared by several documents are changed once.
-    """
-    known = {} if known is None else known
-    for layer in document.layers:
-        if any(pose.phi is old.phi for pose in layer.poses):
-            if layer not in known:
-                poses = (new(layer, pose) if pose.phi is old.phi else pose for pose in layer.poses)
-                known[layer] = layer.with_poses(poses)
-            document = document.with_layer(known[layer])
-    return document
 
 
 def with_all_targets(layer: Layer, pose: Pose) -> Pose:

@@ -23,8 +23,8 @@ from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.layer_setup.layer_runtimes import update_layer_runtimes
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement
-from app.editor.actions.posing.pose_commit import commit_targets
-from app.editor.actions.posing.pose_drag import cancel_drag, revert_drag
+from app.editor.actions.posing.pose_commit import drop_drag
+from app.editor.actions.posing.pose_drag import commit_drag_now, revert_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.texts import N_, _
@@ -69,7 +69,7 @@ def note_widget_in_use(_: Session, project: Project, widget: int) -> None:
 
 
 def _undo_text(_session: Session, project: Project) -> str:
-    step = project.history.undo_label
+    step = project.history.undo_label if project.drag is None else project.drag.command.label
     if project.motion_setup is not None and project.motion_setup.past:
         step = _("Move a joint")
     elif project.motion_job is not None:
@@ -87,7 +87,7 @@ def _undo_text(_session: Session, project: Project) -> str:
 )
 @with_project
 def undo(session: Session, project: Project) -> None:
-    """Undo the last step. A drag that is still held goes on in that step if the step is redone.
+    """Undo the last step; a drag that is held, or shows no pose yet, is cancelled.
 
     A pending action that was asked for last is cancelled first; so is a pending motion. While a
     motion is drafted, undo changes only its joints.
@@ -99,25 +99,22 @@ def undo(session: Session, project: Project) -> None:
         apply_motion.cancel_motion_job(session)
         _show_step_notice(session, UNDONE, _("Apply motion preset"))
         return
-    is_held = any(pull.is_held for pull in project.pulls)
+    drag = project.drag
+    is_held = drag is not None and drag.is_held
     waiting = None if is_held else pending_changes.cancel_deferred_action(project)
     if waiting is not None:
         _show_step_notice(session, UNDONE, waiting)
         return
-    before, unkeyed = project.document, project.history.preview_pose
-    label, position = project.history.undo_label, project.history.position
-    # Steps that came after the targets were set are undone before them.
-    unseen = [pull for pull in project.pulls if pull.kept is None and pull.position >= position]
-    # A released drag must be redoable: it becomes a step before that step is undone.
-    unseen = [pull for pull in unseen if not commit_targets(session, project, pull)]
-    for pull in unseen or [pull for pull in project.pulls if pull.is_held]:
-        cancel_drag(session, project, pull)
-    if unseen:
-        # No pose of these drags is visible yet; only other edits of their gestures are.
-        for pull in unseen:
-            for gesture in (*pull.target_changes, pull.gesture):
-                project.history.revert(gesture)
+    before, unkeyed = project.document, project.preview_pose
+    if drag is not None and (is_held or drag.start is None):
+        project.ended_gesture = drag.gesture
+        drop_drag(session, project, drag)
+        # Other edits of its gestures, such as a new handle.
+        for gesture in (*drag.target_changes, drag.gesture):
+            project.history.revert(gesture)
     else:
+        commit_drag_now(session)
+        label = project.history.undo_label
         project.history.undo()
         _show_step_notice(session, UNDONE, label)
     _forget_what_is_gone(project)
@@ -147,6 +144,9 @@ def _redo_text(_session: Session, project: Project) -> str:
 )
 @with_project
 def redo(session: Session, project: Project) -> None:
+    if project.history.redo_label is None:
+        return
+    commit_drag_now(session)
     before, unkeyed = project.document, project.history.preview_pose
     _show_step_notice(session, REDONE, project.history.redo_label)
     project.history.redo()

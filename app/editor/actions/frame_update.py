@@ -9,9 +9,9 @@ from app.document import Clip, clip_of, keyed_pose_at, segment_time_at
 from app.editor.actions import playback, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.motion_presets import preset_setup
-from app.editor.actions.posing.pose_lifecycle import candidate_clips, update_pose_drags
-from app.editor.actions.posing.pose_solver import POSING
-from app.editor.actions.posing.reach_limit import clamp_unreachable_targets
+from app.editor.actions.posing.pose_commit import POSING
+from app.editor.actions.posing.pose_solver import update_drag
+from app.editor.actions.posing.reach_limit import show_stopped_drag
 from app.editor.actions.tracking.correction_jobs import (
     correction_jobs_for_shown_frame,
     is_track_drag_pending,
@@ -25,7 +25,6 @@ from app.editor.session import Session, with_project
 from app.editor.work.derived import Derived
 from app.editor.work.jobs import Job, JobKind
 from app.editor.work.layer_runtime import LayerRuntime
-from app.editor.work.pull import Pull
 from app.editor.work.revised import revision_getter
 from app.motion import (
     DeformMesh,
@@ -72,9 +71,9 @@ Value = TypeVar("Value")
 
 @with_project
 def bring_poses(session: Session, project: Project) -> None:
-    """Commit the poses of drags to the document."""
-    clamp_unreachable_targets(session, project, resolving.relax_limits_and_solve)
-    update_pose_drags(session, project)
+    """Show the pose of a drag, and commit it when it rests."""
+    update_drag(session, project)
+    show_stopped_drag(session, resolving.relax_limits_and_solve)
 
 
 @with_project
@@ -156,7 +155,7 @@ def follow_playhead(session: Session, project: Project) -> None:
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all values that decide which jobs are due."""
-    take = project.recording
+    take, drag = project.recording, project.drag
     return (
         *(project.document, project.history.position, project.active, project.selected_handles),
         *(playback.current_frame(session, project), project.playhead.since is None),
@@ -164,7 +163,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         *(session.overlays, session.compare_view),
         *(session.export.frame_box, project.awaits_extent, session.active_tool, session.records),
         *(project.selected_track, take, take and (take.is_over, len(take.samples))),
-        *(project.unkeyed_pose, tuple(project.pending), tuple(map(_stage, project.pulls))),
+        *(project.unkeyed_pose, tuple(project.pending), drag and (drag.is_held, drag.preview)),
         tuple(runtime.store for runtime in project.layer_runtimes.values()),
     )
 
@@ -176,11 +175,6 @@ def _drawn_of(session: Session, project: Project) -> tuple[object, ...]:
         *(_inputs(session, project), _is_moving(session, project)),
         *((each.shown, each.fine, each.corrected, each.comparison) for each in runtimes),
     )
-
-
-def _stage(pull: Pull) -> tuple[object, ...]:
-    """Return the progress of a drag, as far as jobs for in-betweens depend on it."""
-    return pull.is_held, pull.is_left, pull.frame, pull.kept, pull.tried, pull.ready
 
 
 def _follow_document(session: Session, project: Project) -> None:
@@ -199,11 +193,10 @@ def give_up(session: Session, kind: JobKind) -> None:
 
 def _pin(session: Session, project: Project) -> None:
     """Note in all caches the present clips, and the clips that undo and redo lead to."""
-    frame, tried = playback.current_frame(session, project), candidate_clips(project)
+    frame = playback.current_frame(session, project)
     for clip, runtime in _clips(project):
         layer, comparison = clip.layer.id, runtime.comparison
-        others = [each for each in tried if each.layer.id == layer]
-        others += [] if comparison is None else [comparison.clip(project.document)]
+        others = [] if comparison is None else [comparison.clip(project.document)]
         nearby = [
             clip_of(document, layer)
             for document in project.history.nearby
@@ -219,7 +212,7 @@ def due_jobs(session: Session, project: Project) -> Iterator[Job]:
     yield from _cut(session, project)
     # Motion paths come first: the person watches them during a drag, and they are of few points.
     yield from _trace(session, project)
-    if _asks_extent(session, project) and not project.is_posing:
+    if _asks_extent(session, project) and project.drag is None:
         yield from _span(session, project)
     yield from _make_frames(session, project)
     yield from correction_jobs_for_shown_frame(session, project)
@@ -241,7 +234,7 @@ def due_jobs(session: Session, project: Project) -> Iterator[Job]:
         return
     if _prepares_all(session, project):
         yield from next_correction_jobs(session, project)
-    if project.is_posing:
+    if project.drag is not None:
         # The jobs below take longer than a pause of the drag.
         return
     yield from _compute_joints(session, project)
@@ -302,21 +295,21 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
     """Yield the clips that need in-betweens, the most urgent first."""
     frame, clips = playback.current_frame(session, project), _clips(project)
     clips = [(clip, runtime) for clip, runtime in clips if not runtime.store.has_failed(clip)]
-    prepares_all = _prepares_all(session, project)
+    # Until a drag rests, its pose changes once more.
+    is_final = project.drag is None or project.drag.is_at_rest or session.overlays.onion
+    prepares_all = is_final and _prepares_all(session, project)
 
     def is_wanted(clip: Clip, store: InbetweenCache) -> bool:
         return prepares_all or not store.is_exact(clip, frame)
 
     # In-betweens that are not visible during a drag are not computed for each move.
-    is_seen = session.overlays.onion or project.pull is None
+    is_seen = session.overlays.onion or project.visible_drag is None
     if is_seen or POSING not in session.jobs.kinds:
         # Clips whose shown frame is an approximation come first.
         for clip, runtime in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
             if is_wanted(clip, runtime.store):
                 yield SKETCHING, runtime, clip
-    for clip in candidate_clips(project, left=not prepares_all):
-        yield SKETCHING, project.layer_runtimes[clip.layer.id], clip
-    if project.is_posing:
+    if project.drag is not None:
         return
     for runtime in project.layer_runtimes.values():
         if runtime.comparison is not None:
@@ -355,7 +348,7 @@ def _prepare(
         return None
     # During a drag with onion skin all are made at once, so that the ghosts stay together.
     # Otherwise one at a time, so that more urgent jobs do not wait long.
-    if not (session.overlays.onion and project.pull is not None):
+    if not (session.overlays.onion and project.visible_drag is not None):
         lacking = lacking[:1]
     prepare = store.segments_job(clip, lacking, runtime.store.sampler)
     return _interval_job(session, kind, runtime, clip, work=prepare, done=store.add)
@@ -547,5 +540,7 @@ def _show(session: Session, project: Project) -> None:
 def _is_moving(session: Session, project: Project) -> bool:
     """Return whether the shown frame changes too fast for fine meshes."""
     is_scrubbed = session.clock() - project.moved_at < STILL
-    is_moving = project.pull is not None or project.playhead.since is not None or is_scrubbed
+    is_moving = (
+        project.visible_drag is not None or project.playhead.since is not None or is_scrubbed
+    )
     return is_moving and not session.full_detail

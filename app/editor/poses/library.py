@@ -8,14 +8,15 @@ from typing import NamedTuple
 from app.document import Keyframe, Layer, LibraryPose, Pose, Target, pose_commands
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action
-from app.editor.actions.posing.pose_drag import drag_handles, end_drag_at, release_drag
+from app.editor.actions.posing.pose_commit import commit_drag
+from app.editor.actions.posing.pose_drag import drag_handles, release_drag
 from app.editor.parts.clipboard import CopiedKeys
 from app.editor.poses import pasting, pasting_targets, pose_insertion
 from app.editor.poses.paste_destinations import PasteDestination, find_paste_destination
 from app.editor.project import BlendPreview, Project
 from app.editor.session import Session, with_project
+from app.editor.work.drag_session import DragStart
 from app.editor.work.jobs import JobKind
-from app.editor.work.pull import DragStart
 from app.texts import _
 
 KEEPING = JobKind(_("Saving a pose"), _("The pose could not be keyed"), "hand")
@@ -149,10 +150,12 @@ def end_pose_blend(session: Session, project: Project) -> None:
     """Keep the blended pose; with a share of 1, key the library pose exactly."""
     blend, project.blend_preview = project.blend_preview, None
     release_drag(session)
-    if blend is not None and blend.share >= 1.0 and blend.owner == project.active:
-        for pull in [pull for pull in project.pulls if blend.gesture in pull.target_changes]:
-            pose = project.document.layer(pull.layer).library_pose(blend.name).pose
-            end_drag_at(session, project, pull, pose)
+    drag = project.drag
+    if blend is None or drag is None or blend.gesture not in drag.target_changes:
+        return
+    if blend.share >= 1.0 and blend.owner == project.active:
+        pose = project.document.layer(drag.layer).library_pose(blend.name).pose
+        commit_drag(session, project, drag, pose)
 
 
 def _between(one: Target, other: Target, share: float) -> Target:

@@ -27,7 +27,7 @@ from app.editor.project import Project
 from app.editor.session import Hint, Mark, NumericEntryOverlay, Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool, to_scene
-from app.editor.work.pull import DragStart
+from app.editor.work.drag_session import DragStart
 from app.texts import _
 from engine.deform import BoundedPull
 

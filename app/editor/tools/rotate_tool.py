@@ -23,7 +23,7 @@ from app.editor.project import Project
 from app.editor.session import Hint, Mark, NumericEntryOverlay, RotationOverlay, Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool
-from app.editor.work.pull import DragStart
+from app.editor.work.drag_session import DragStart
 from app.texts import _
 
 STEP = math.radians(15.0)  # step of a rotation that snaps

@@ -121,7 +121,7 @@ def describe_pose_limit(session: Session) -> str:
 def describe_motion_limit(session: Session) -> str:
     """Return at which smooth keys the limits slow the motion down; else ""."""
     project = session.project
-    if project is None or project.is_posing or project.playhead.since is not None:
+    if project is None or project.drag is not None or project.playhead.since is not None:
         return ""
     # The text changes with each result of the worker.
     known, source = project.timeline.slowed, (project.clip, session.jobs.delivered)

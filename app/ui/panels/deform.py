@@ -187,7 +187,7 @@ def _colour(look: Look, limit: LimitRow, used: float, bound: float) -> imgui.ImV
 def _solver(session: Session, look: Look, project: Project) -> None:
     palette, shown = look.palette, project.layer_runtime.shown
     pose = None if shown is None else shown.pose
-    if project.pull is not None and not project.pull.is_at_rest:
+    if project.visible_drag is not None and not project.visible_drag.is_at_rest:
         _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, _("Following the handles"))
         time = 1000 * session.diagnostics.solver_seconds
         small_text(look, _("{time:.0f} ms a step").format(time=time))

@@ -230,7 +230,7 @@ def _draw_target(look: Look, project: Project, handle: Handle) -> list[Action]:
     missed = _find_target_errors(project)
     lag = missed.errors.get(handle.id)
     if lag is not None:
-        is_coming = project.pull is not None and not project.pull.is_at_rest
+        is_coming = project.visible_drag is not None and not project.visible_drag.is_at_rest
         text = (
             _("{lag:.0f} px short of its target, on its way")
             if is_coming

@@ -125,7 +125,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.layer_runtime.store.sampler,
         project.paths.value if session.overlays.paths else None,
         project.parent_transforms.value,
-        project.pull.targets if project.pull else None,
+        project.visible_drag.targets if project.visible_drag else None,
         project.selected_track,
         project.layer_runtime.corrected.count_grounds if project.layer_runtime.corrected else 0,
         project.recording,

@@ -84,8 +84,9 @@ def find_off_target(project: Project, shown: DisplayedFrame) -> dict[int, comple
     """
     layer, targets = shown.clip.layer, shown.pose.targets if shown.pose else {}
     own = {handle for track in _acting(shown) for handle in track.handles} | layer.sprung_handles
-    if project.pull and project.pull.world_targets is not None:
-        targets = project.pull.world_targets
+    drag = project.visible_drag
+    if drag is not None and drag.world_targets is not None:
+        targets = drag.world_targets
     places = zip(layer.handles, shown.handle_positions.tolist(), strict=True)
     wanted = ((handle.id, targets.get(handle.id), place) for handle, place in places)
     short = {

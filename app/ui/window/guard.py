@@ -218,7 +218,7 @@ def _state(session: Session) -> tuple[object, ...]:
         return own
     return (
         *own,
-        *(project.document, project.history.position, project.history.preview_pose, project.active),
+        *(project.document, project.history.position, project.preview_pose, project.active),
         *(
             project.selected_handles,
             project.selected_channel,

@@ -34,7 +34,7 @@ class FreeMemory:
             self._give(now)
         if session.jobs.kinds or session.export.run is not None or is_playing:
             self._due = now + REST
-            is_watched = is_playing or (project is not None and project.is_posing)
+            is_watched = is_playing or (project is not None and project.drag is not None)
             if now >= self._given + WORK and not is_watched:
                 self._give(now)
         elif self._due is not None and now >= self._due:

@@ -7,14 +7,10 @@ from hypothesis import given, settings, strategies as st
 
 from app.document.commands import (
     handle_commands,
-    pose_commands,
     scene_commands,
     shape_commands,
 )
 from app.document.commands.command import Command
-from app.document.commands.keys import (
-    key_commands,
-)
 from app.document.commands.layers import layer_commands
 from app.document.history import History, PreviewPose, _bytes_only_in
 from app.errors import LissomError
@@ -332,67 +328,31 @@ def held(history):
     return [*(_bytes_only_in(old, new) for old, new in pairs), 0]
 
 
-def test_what_a_gesture_led_to_goes_on_in_its_step_and_in_all_later_ones():
-    first = full_document()
-    history, gesture = History(first, saved=True), object()
-    layer = first.layers[0]
-    frame = layer.keys[0].frame
-    pose = moved(layer.keys[0].pose, 1)
-    history.do(key_commands.replace_key_pose(layer.id, frame, pose), gesture=gesture)
-    history.do(pose_commands.save_pose(layer.id, pose, "copy"))
-    history.do(set_fps(31))
-    history.undo()
-    rest = moved(pose, 2)
-    assert history.amend(gesture, pose, lambda _, earlier: replace(rest, targets=earlier.targets))
-    for documents in range(3):
-        now = history.document.layers[0]
-        assert now.key(frame).pose.phi is rest.phi, documents
-        assert all(kept.pose.phi is rest.phi for kept in now.library if kept.name == "copy")
-        history.redo() if documents == 0 else history.undo()
-    history.redo()
-    assert history._bytes == held(history)
-    while history.undo_label is not None:
-        history.undo()
-    assert history.document is first, "nothing before it has changed"
-    # As soon as something else took the place of its step, it is over.
-    history.do(set_fps(17))
-    assert not history.amend(gesture, rest, lambda _, earlier: earlier)
-
-
-def test_steps_still_share_a_layer_when_its_pose_goes_on():
-    first = full_document()
-    history, gesture = History(first, saved=True), object()
-    layer = first.layers[0]
-    frame = layer.keys[0].frame
-    pose, made = moved(layer.keys[0].pose, 1), []
-    history.do(key_commands.replace_key_pose(layer.id, frame, pose), gesture=gesture)
+@pytest.mark.parametrize("change", ["do", "preview", "extend", "undo", "redo"])
+def test_a_preview_is_committed_before_any_other_change(change):
+    history, committed = History(full_document(), saved=True), []
     history.do(set_fps(31))
     history.do(set_fps(32))
-    assert history.amend(gesture, pose, lambda *_: made.append(moved(pose, 2)) or made[-1])
-    assert len(made) == 1, "the work does not grow with the steps"
-    layers = [step.document.layers[0] for step in history._steps[1:]]
-    assert len(layers) == 3
-    assert all(each is layers[0] for each in layers)
+    history.undo()
 
+    def commit():
+        committed.append(history.document.fps)
+        history.do(set_fps(33))
 
-def test_an_unkeyed_pose_goes_on_too_and_other_poses_stay():
-    first = full_document()
-    history, gesture = History(first, saved=True), object()
-    layer = first.layers[0]
-    pose = moved(layer.keys[0].pose, 1)
-    history.set_preview_pose(PreviewPose(layer=layer.id, frame=5, pose=pose), gesture=gesture)
-    rest = moved(pose, 2)
-    assert history.amend(gesture, pose, lambda *_: rest)
-    assert history.preview_pose.pose is rest
-    assert history.document is first
-    # Also where the layer that it is of is gone later on.
-    history.do(layer_commands.add_layer(replace(layer, id=layer.id + 100)))
-    history.do(layer_commands.remove_layer(layer.id))
-    assert history.amend(gesture, rest, lambda *_: replace(rest))
-    history.undo()
-    history.undo()
-    history.undo()
-    assert history.preview_pose is None
+    history.before_change = commit
+    layer = history.document.layers[0]
+    pose = PreviewPose(layer=layer.id, frame=1, pose=layer.keys[0].pose)
+    {
+        "do": lambda: history.do(set_fps(34)),
+        "preview": lambda: history.set_preview_pose(pose),
+        "extend": lambda: history.extend_step(set_fps(34)),
+        "undo": history.undo,
+        "redo": history.redo,
+    }[change]()
+    assert committed == [31]
+    assert history.before_change is None
+    wanted = {"do": 34, "extend": 34, "undo": 31}
+    assert history.document.fps == wanted.get(change, 33)
 
 
 @pytest.mark.parametrize("change", ["another domain", "no layer"])

@@ -9,16 +9,19 @@ from unrest import is_shown, unrest
 
 from app.document import cycle_commands, scene_commands
 from app.document.keyframe import Target
+from app.editor import pending_changes
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import add_handle
-from app.editor.actions.posing.inserting import insert_key
-from app.editor.actions.posing.pose_commit import NO_POSE
-from app.editor.actions.posing.pose_drag import drag_handles, free_rotation, set_targets
-from app.editor.actions.posing.pose_lifecycle import candidate_clips
+from app.editor.actions.posing.inserting import INSERTING, insert_key
+from app.editor.actions.posing.pose_drag import (
+    drag_handles,
+    free_rotation,
+    release_drag,
+    set_targets,
+)
 from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.parenting import delete_layers
-
-ROUNDS = 50  # of work until all is at rest, at most
+from app.errors import LissomError
 
 
 @pytest.fixture
@@ -26,7 +29,7 @@ def session(tmp_path):
     return session_of(posed(2), tmp_path)
 
 
-def test_refused_pose_is_reported_once(session):
+def test_command_is_refused_if_an_unfinished_drag_rules_it_out(session):
     project = session.project
     last = project.layer.keys[-1].frame
     frames = replace(project.document.frames, last=last + 20)
@@ -35,78 +38,80 @@ def test_refused_pose_is_reported_once(session):
     handle = project.layer.handles[0]
     with session.jobs.held():
         set_targets(session, {handle.id: Target(position=handle.position + 9)})
-        run_update_steps(session)
-        project.history.do(cycle_commands.set_cycle(0, 0, last + 2))
+        with pytest.raises(LissomError, match=f"key at frame {last + 5}"):
+            project.history.do(cycle_commands.set_cycle(0, 0, last + 2))
     settle(session)
-    settle(session)
-    (toast,) = session.notices.toasts
-    assert toast.text.startswith(NO_POSE)
     assert not project.pending
+    assert last + 5 in project.layer.key_frames
     assert project.layer_runtime.shown.clip == project.clip
 
 
-def begun_pull(session):
-    """Pull a handle of the last key until the document has the first pose of it."""
+def begun_drag(session):
+    """Drag a handle of the last key until a pose of it is shown, and let go."""
     project = session.project
     playback.scrub(session, project.layer.keys[-1].frame)
     handle = project.layer.handles[0]
     set_targets(session, {handle.id: Target(position=handle.position + 9)})
-    run_update_steps(session)
-    (pull,) = project.pulls
-    while pull.kept is None or pull.kept is pull.before:
+    while project.drag.preview is None:
+        run_update_steps(session)
         assert session.jobs.wait_until_idle()
         session.jobs.deliver()
-        run_update_steps(session)
-    # The hand lets go, and the in-betweens of an earlier pose are there.
-    pull.is_held, pull.ready = False, replace(pull.kept, phi=pull.kept.phi.copy())
-    return pull
+    assert not project.drag.is_at_rest
+    return project.drag
 
 
-def test_undone_pull_has_its_newest_pose_and_no_other(session):
+def test_undo_of_an_unfinished_drag_can_be_redone(session):
     project = session.project
-    pull = begun_pull(session)
-    with session.jobs.held():
-        editing.undo(session)
-        playback.scrub(session, 0)
-        run_update_steps(session)
-        later = [step.document for step in project.history._steps]
-        run_update_steps(session)
-    assert not pull.is_in(project.history)
-    assert pull.kept is pull.newest
-    now = [step.document for step in project.history._steps]
-    assert all(document is before for document, before in zip(now, later, strict=True))
+    before = project.document
+    drag = begun_drag(session)
+    editing.undo(session)
+    assert project.document is before
+    assert project.drag is None
+    editing.redo(session)
+    assert project.layer.keys[-1].pose is drag.newest
+    assert drag.is_at_rest
 
 
-def test_pull_of_a_removed_layer_lets_its_copy_rest(session):
+def test_duplicate_of_a_dragged_layer_has_its_pose_at_rest(session):
     project, original = session.project, session.project.active
-    pull = begun_pull(session)
-    with session.jobs.held():
-        duplicate_layer(session, original)
-        delete_layers(session, original)
-        assert not pull.is_in(project.history)
-        assert any(pose.phi is pull.kept.phi for pose in project.layer.poses)
-        playback.scrub(session, 5)
-        insert_key(session)
-        run_update_steps(session)
-    for _ in range(ROUNDS):
-        assert session.jobs.wait_until_idle()
-        session.jobs.deliver()
-        run_update_steps(session)
+    drag = begun_drag(session)
+    duplicate_layer(session, original)
+    delete_layers(session, original)
+    assert project.layer.keys[-1].pose.phi is drag.newest.phi
+    playback.scrub(session, 5)
+    insert_key(session)
+    settle(session)
     assert is_shown(session), unrest(session)
-    assert not project.pending, unrest(session)
     assert 5 in project.layer.key_frames
 
 
-def test_clip_of_a_tried_pose_is_made_once_for_a_document(session):
-    pull = begun_pull(session)
-    with session.jobs.held():
-        pull.tried = pull.ready
-        (clip,) = candidate_clips(session.project)
-        assert candidate_clips(session.project) == [clip]
-        assert candidate_clips(session.project)[0] is clip
-        assert any(key.pose.phi is pull.tried.phi for key in clip.keys)
-        pull.tried = pull.newest
-        assert candidate_clips(session.project)[0] is not clip
+def test_moves_of_a_drag_that_a_command_ended_are_void(session):
+    project, handle = session.project, session.project.layer.handles[0]
+    drag_handles(session, {handle.id: Target(position=handle.position + 9)}, gesture="drag")
+    settle(session)
+    assert project.drag.is_held
+    project.history.do(scene_commands.set_fps(31))
+    document = project.document
+    drag_handles(session, {handle.id: Target(position=handle.position + 20)}, gesture="drag")
+    settle(session)
+    assert project.document is document
+    assert project.layer.keys[0].pose.targets[handle.id].position == handle.position + 9
+
+
+def test_result_of_a_worker_waits_for_a_drag(session):
+    project, handle = session.project, session.project.layer.handles[0]
+    drag_handles(session, {handle.id: Target(position=handle.position + 9)}, gesture="drag")
+    taken = []
+    pending_changes.begin_pending_change(
+        session, project, INSERTING, lambda: 1, lambda _: taken.append(project.drag)
+    )
+    settle(session)
+    assert project.drag.is_held
+    assert not taken
+    release_drag(session)
+    settle(session)
+    pending_changes.run_deferred_actions(session)
+    assert taken == [None]
 
 
 def test_turn_of_a_handle_that_came_later_is_left_out(session):

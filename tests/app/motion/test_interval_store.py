@@ -23,8 +23,8 @@ from app.editor.actions.frame_update import STREAMING, due_jobs
 from app.editor.actions.timing import keys
 from app.editor.parts.settings import SessionSettings
 from app.editor.session import Session
+from app.editor.work.drag_session import DragSession
 from app.editor.work.jobs import Jobs
-from app.editor.work.pull import Pull
 from app.motion import (
     CachedSegment,
     CacheUpdate,
@@ -439,8 +439,16 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     project.layer_runtime.store = InbetweenCache(mesh=store.mesh)
     prepare(project.layer_runtime.store, clip)
     project.history = History(document, saved=True)
-    pull = Pull(clip=clip, frame=13, gesture=object(), start=None, before=None, is_keyed=True)
-    project.pending.append(pull)
+    drag = DragSession(
+        clip=clip,
+        frame=13,
+        gesture=object(),
+        start=None,
+        before=None,
+        is_keyed=True,
+        easing=session.preferences.easing,
+    )
+    project.pending.append(drag)
     assert not list(due_jobs(session, project))
 
 

@@ -82,13 +82,13 @@ def test_a_handle_moves_as_far_as_the_pointer_did_meanwhile(window, bent, come):
         drag(robot, window, bent)
         # Nothing is pulled out of a pose that is not the one of this frame.
         assert bent.document is before
-        assert bent.pull.drag is None
+        assert bent.visible_drag.solver is None
         # The hand is to be followed.
         assert not window.awaits_worker
         come(settles=False)
-        while bent.pull.drag is None:
+        while bent.visible_drag.solver is None:
             robot.yield_(1)
-        assert bent.pull.is_held
+        assert bent.visible_drag.is_held
         robot.mouse_up(0)
 
     window.run(play)
@@ -149,16 +149,16 @@ def test_it_is_taken_back_before_it_began(window, bent, come):
 
     def play(robot, *, escapes=False):
         drag(robot, window, bent)
-        assert bent.pull is not None
+        assert bent.visible_drag is not None
         if escapes:
             robot.key_press(int(window.Key.escape))
         robot.mouse_up(0)
 
     window.run(lambda robot: play(robot, escapes=True))
-    assert bent.pulls == []
+    assert bent.drag is None
     window.run(play)
     window.act(editing.undo)
-    assert bent.pulls == []
+    assert bent.drag is None
     come()
     assert bent.document is before
 
@@ -178,7 +178,7 @@ def test_it_is_not_lost_where_something_else_follows(window, bent, come, leave):
     window.act(leave)
     window.session.dialogs.current = None
     come()
-    window.until(lambda: not bent.pulls)
+    window.until(lambda: bent.drag is None)
     playback.stop_playback(window.session)
     target = bent.layer.key(FRAME).pose.targets[1]
     assert bent.layer.target_errors(bent.layer.key(FRAME).pose)[1] < 1.0

@@ -23,7 +23,15 @@ EDITS = (
 # are held to edit nothing: a new one that does so, and is in no list, fails there.
 ALONE = (
     *("save", "export again", "copy picture", "close", "quit", "undo"),
-    *("paste", "paste flipped", "paste swapped", "paste on selected", "flip on selected"),
+    *(
+        "copy",
+        "copy all",
+        "paste",
+        "paste flipped",
+        "paste swapped",
+        "paste on selected",
+        "flip on selected",
+    ),
     *("delete", "suggest handles", "pin here", "key handle", "mirror"),
     *("start", "play", "insert key", "first animation"),
 )
@@ -64,8 +72,8 @@ def call(window, name):
 def test_drag_survives_each_command_that_edits_nothing(window, ready, monkeypatch):
     session, start = window.session, ready.document
     goal = drag_bar(window, ready)
-    (pull,) = ready.pulls
-    window.until(lambda: pull.kept is not None)
+    drag = ready.drag
+    window.until(lambda: drag.preview is not None)
     # Nothing more comes of it until all commands are done.
     deliver = session.jobs.deliver
     monkeypatch.setattr(session.jobs, "deliver", lambda: None)
@@ -79,13 +87,13 @@ def test_drag_survives_each_command_that_edits_nothing(window, ready, monkeypatc
             "project": session.project is ready,
             "document": ready.document is dragged,
             "step": ready.history.undo_label == label,
-            "drag": ready.pulls == [pull] and ready.pull is pull,
+            "drag": ready.drag is drag and ready.visible_drag is drag,
             "at once": not ready.deferred and not exporting.is_export_under_way(session),
         }
         lost = [what for what, is_held in held.items() if not is_held]
         assert not lost, f"“{name}” edits, waits or leaves: it belongs to another list"
         ready.selected_handles = frozenset({0})
-    assert not pull.is_at_rest
+    assert not drag.is_at_rest
     monkeypatch.setattr(session.jobs, "deliver", deliver)
     window.until(lambda: not ready.pending)
     check_at_rest(ready.document, goal)
@@ -97,9 +105,9 @@ def test_drag_survives_each_command_that_edits_nothing(window, ready, monkeypatc
 def test_drag_is_a_step_beside_each_edit_that_follows(window, ready):
     session, start = window.session, ready.document
     goal = drag_bar(window, ready)
-    (pull,) = ready.pulls
-    window.until(lambda: pull.kept is not None)
-    lost, steps = [], [ready.history.position]
+    drag = ready.drag
+    window.until(lambda: drag.preview is not None)
+    lost, steps = [], [ready.history.position + 1]  # with the drag's own
     for name in EDITS:
         call(window, name)
         steps.append(ready.history.position)
@@ -123,9 +131,9 @@ def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
     session, path = window.session, ready.file.path
     start = ready.document
     goal = drag_bar(window, ready)
-    assert ready.pulls
+    assert ready.drag is not None
     if name in FURTHER:
-        window.until(lambda: ready.pulls[-1].kept is not None)
+        window.until(lambda: ready.drag.preview is not None)
     call(window, name)
     window.until(lambda: not ready.pending and not ready.deferred)
     assert session.project is ready, "it asks first"

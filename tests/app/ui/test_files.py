@@ -288,7 +288,7 @@ def test_the_autosave_waits_for_the_hand_but_not_for_ever(window, project, kept)
         assert not list(window.folder.glob("unsaved-*.lissom"))
         window.clock.now += SECONDS / 2
         window.until(lambda: bool(list(window.folder.glob("unsaved-*.lissom"))))
-        assert project.pull is not None
+        assert project.visible_drag is not None
     assert kept() == 1
 
 
@@ -298,11 +298,11 @@ def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, t
     place = complex(*project.document.canvas)
     set_targets(window.session, {0: Target(position=place), 1: Target(position=1.2 * place)})
     window.frames(2)
-    assert project.pull is not None
+    assert project.visible_drag is not None
     path = tmp_path / "bar.lissom"
     saving.write_project(window.session, path, None)
     window.settle()
-    assert project.pull is None
+    assert project.visible_drag is None
     assert project.history.is_saved
     (saved,), (now,) = load_project(path).layers[0].keys, project.layer.keys
     assert saved.pose.targets == now.pose.targets

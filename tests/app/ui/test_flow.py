@@ -126,7 +126,7 @@ def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
     before = bar.document
     window.run(lambda robot: drag(robot, window, start, start + 150j, steps=12))
     window.settle()
-    assert bar.pull is None
+    assert bar.visible_drag is None
     lag = bar.document.layers[0].target_errors(bar.document.layers[0].keys[0].pose)[1]
     assert lag < 0.05 * abs(150j)
     # It is looked at before the steps and after.
@@ -142,10 +142,10 @@ def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
     drag_handles(session, {1: Target(position=wanted)})
     release_drag(session)
     leave(session)
-    assert bar.pull is None
-    assert bar.pulls
+    assert bar.visible_drag is None
+    assert bar.drag is not None
     window.settle()
-    assert not bar.pulls
+    assert bar.drag is None
     (key,) = bar.document.layers[0].keys
     assert key.frame == 0
     assert bar.document.layers[0].target_errors(key.pose)[1] < 5
@@ -157,10 +157,11 @@ def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window,
     drag_handles(session, {1: Target(position=handle_places(bar)[1] + 150j)})
     window.settle()
     posed = bar.document
-    assert bar.pull.is_held
+    assert bar.visible_drag.is_held
+    assert bar.history.document is not posed, "it becomes a step when the hand lets go"
     playback.seek(session, 24)
     window.settle()
-    assert not bar.pulls
+    assert bar.drag is None
     assert bar.document is posed
 
 
@@ -207,10 +208,10 @@ def test_a_shape_that_is_held_back_is_left_alone_when_the_hand_lets_go(window, b
     drag_handles(session, {1: Target(position=handle_places(bar)[1] + 9000)})
     window.settle()
     held = bar.layer_runtime.shown.positions
-    assert bar.pull.drag.state.status is Status.AT_LIMITS
+    assert bar.visible_drag.solver.state.status is Status.AT_LIMITS
     release_drag(session)
     window.settle()
-    assert bar.pull is None
+    assert bar.visible_drag is None
     np.testing.assert_array_equal(bar.layer_runtime.shown.positions, held)
 
 
@@ -235,7 +236,7 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
         while session.jobs.kinds:
             robot.yield_()
         halfway.update(
-            grab=bar.pull,
+            grab=bar.visible_drag,
             known=bar.layer_runtime.store.has(bar.clip),
             positions=bar.layer_runtime.store.positions(bar.clip, 12),
         )

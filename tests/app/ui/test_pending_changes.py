@@ -16,7 +16,7 @@ from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.handles import add_handle, mirror_handles, remove_handles
 from app.editor.actions.posing.inserting import INSERTING, insert_key
-from app.editor.actions.posing.pose_drag import cancel_drag, release_drag, set_targets
+from app.editor.actions.posing.pose_drag import release_drag, set_targets
 from app.editor.actions.posing.pose_solver import POSING, is_display_final
 from app.editor.actions.project_files import exporting, saving
 from app.editor.actions.timing import keys
@@ -50,8 +50,8 @@ FOLLOWS = {
 def test_drag_comes_to_rest_whatever_follows(window, loose, name):
     start = loose.document
     goal = drag_bar(window, loose)
-    assert loose.pulls
-    assert not loose.pulls[-1].is_at_rest, "it takes several pictures"
+    assert loose.drag is not None
+    assert not loose.drag.is_at_rest, "it takes several pictures"
     FOLLOWS[name](window.session)
     window.settle()
     playback.stop_playback(window.session)
@@ -62,7 +62,7 @@ def test_drag_comes_to_rest_whatever_follows(window, loose, name):
     while loose.document is not start:
         assert loose.history.undo_label is not None
         editing.undo(window.session)
-    assert not loose.pulls
+    assert loose.drag is None
 
 
 def test_drag_goes_on_while_rough_frames_play(window, loose):
@@ -75,15 +75,6 @@ def test_drag_goes_on_while_rough_frames_play(window, loose):
     assert not is_display_final(session, loose)
 
 
-def test_drag_that_has_ended_can_be_given_up(window, loose):
-    with window.session.jobs.held(POSING):
-        drag_bar(window, loose)
-        (pull,) = loose.pulls
-        for _ in range(2):
-            cancel_drag(window.session, loose, pull)
-    assert not loose.pulls
-
-
 @pytest.mark.parametrize("is_seen", [True, False])
 def test_moved_and_copied_keys_come_to_rest_too(window, loose, is_seen):
     if is_seen:
@@ -91,7 +82,7 @@ def test_moved_and_copied_keys_come_to_rest_too(window, loose, is_seen):
     else:
         with window.session.jobs.held(POSING):
             goal = drag_bar(window, loose)
-        assert loose.pulls[-1].kept is None
+        assert loose.drag.preview is None
     editing.edit_document(window.session, channel_commands.copy_keys({pose_channel(0): {24}}, 24))
     editing.edit_document(window.session, channel_commands.move_keys({pose_channel(0): {24}}, 6))
     window.settle()
@@ -135,7 +126,6 @@ def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
             set_active_layer(window.session, identity)
             goals[identity] = drag_bar(window, loose)
         assert loose.active == other
-        assert len(loose.pulls) == 2
     window.settle()
     for identity, goal in goals.items():
         check_at_rest(loose.document, goal, layer=identity)
@@ -150,7 +140,6 @@ def test_a_save_has_a_drag_on_each_of_many_layers(window, loose, tmp_path):
         for layer in loose.document.layers:
             set_active_layer(window.session, layer.id)
             goals[layer.id] = drag_bar(window, loose)
-        assert len(loose.pulls) == len(goals) == 4
         saving.write_project(window.session, path, None)
         assert not path.exists()
     window.until(lambda: not loose.pending)
@@ -167,7 +156,7 @@ def test_a_picture_is_exported_as_it_comes_to_rest(window, loose, tmp_path):
     exporting.start_export(window.session, out)
     assert window.session.export.run is None
     window.until(lambda: out.exists() and window.session.export.run is None)
-    assert not loose.pulls
+    assert loose.drag is None
     check_at_rest(loose.document, goal)
     # Once more, of the pose at rest.
     again = tmp_path / "again.png"
@@ -354,17 +343,17 @@ def beside_the_axis(window, project):
 def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, loose):
     added = beside_the_axis(window, loose)
     drag_bar(window, loose)
-    (pull,) = loose.pulls
-    window.until(lambda: pull.kept is not None)
+    drag = loose.drag
+    window.until(lambda: drag.preview is not None)
     # Left while the solver is ahead of what the document has.
     playback.scrub(window.session, 7)
     window.frames()
-    before = loose.document
     loose.selected_handles = frozenset({added})
     mirror_handles(window.session)
     assert len(loose.layer.handles) == 4, [toast.text for toast in window.session.notices.toasts]
     editing.undo(window.session)
-    assert loose.document is before
+    assert len(loose.layer.handles) == 3
+    assert loose.layer.key(24).pose is drag.newest
 
 
 def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(window, loose):
@@ -374,18 +363,15 @@ def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(w
         drag_bar(window, loose)
         loose.selected_handles = frozenset({added})
         mirror_handles(window.session)
-        (pull,) = loose.pulls
-        assert pull.kept is None
+        assert loose.drag is None
         editing.undo(window.session)
         assert loose.layer.handles == handles
-        assert loose.pulls == [pull]
-        assert loose.document is before
         mirror_handles(window.session)
         editing.undo(window.session)
         editing.undo(window.session)
         assert loose.document is before
     window.settle()
-    assert not loose.pulls
+    assert loose.drag is None
     assert loose.document is before
 
 
@@ -393,7 +379,7 @@ def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, l
     before = loose.document
     with window.session.jobs.held(POSING):
         goal = drag_bar(window, loose)
-        assert loose.pulls[-1].kept is None
+        assert loose.drag.preview is None
         editing.undo(window.session)
         assert loose.document is before
         editing.redo(window.session)
@@ -406,14 +392,14 @@ def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, l
 def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(window, loose):
     before = loose.document
     with window.session.jobs.held(POSING):
-        goal = drag_bar(window, loose)
         copying.copy_pose_or_keys(window.session)
+        goal = drag_bar(window, loose)
         playback.scrub(window.session, 40)
         pasting.paste_copied(window.session, "flipped")
         assert [each.what for each in loose.deferred] == ["Paste flipped"]
         editing.undo(window.session)
         assert not loose.deferred
-        assert loose.pulls, "the drag goes on"
+        assert loose.drag is not None, "the drag goes on"
     window.settle()
     check_at_rest(loose.document, goal)
     assert loose.layer.key_frames == {0, 24}
@@ -444,22 +430,19 @@ def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(wi
         release_drag(window.session)
         add_handle(window.session, complex(places.mean()))
         (added,) = loose.selected_handles
-        # Of a document that is not shown yet, nobody knows where a drag begins.
         set_targets(window.session, {1: Target(position=places[1] + 5j)})
         release_drag(window.session)
-        (pull,) = loose.pulls
-        assert pull.start is None
     window.settle()
     assert loose.layer.key(12).pose.targets.keys() == {0, 1, added}
 
 
 def test_a_drag_of_a_layer_that_stands_still_since_comes_to_rest(window, loose):
     drag_bar(window, loose)
-    (pull,) = loose.pulls
-    window.until(lambda: pull.kept is not None)
+    drag = loose.drag
+    window.until(lambda: drag.preview is not None)
     playback.scrub(window.session, 7)
     window.frames(1)
     make_still(window.session, 0)
     copying.copy_pose_or_keys(window.session)
     window.until(lambda: not loose.pending)
-    assert pull.kept is pull.newest
+    assert drag.is_at_rest

@@ -88,7 +88,7 @@ from app.editor.layering.pictures import add_layers, make_posable, make_still
 from app.editor.layering.switches import create_switch, delete_switch
 from app.editor.parts.timeline import TimeRangeView
 from app.editor.poses import copying, flipping, library, pasting, pasting_targets
-from app.editor.work import pull
+from app.editor.work import drag_session
 from app.editor.work.jobs import JobKind, Jobs
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
@@ -123,7 +123,7 @@ CHEAP = (
     (Document.__init__, "__kwdefaults__", {**NEW_DOCUMENT, "frames": FrameRange(0, LAST)}),
     (Layer.__init__, "__kwdefaults__", {**NEW_LAYER, "variant": "nu"}),
     (pinning, "DEGREES", (4, 8, 16, 32)),
-    (pull, "MOST_STEPS", 60),
+    (drag_session, "MOST_STEPS", 60),
     (harness, "STEP", 0.001),
     (enclosure, "MARGINS", {"coarse": 0.03, "normal": 0.025, "fine": 0.02}),
 )

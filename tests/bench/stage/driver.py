@@ -204,13 +204,14 @@ class HandleDrag:
     @property
     def wish(self) -> Target | None:
         """Where the handle is wanted now."""
-        posing = self._project.pull
+        posing = self._project.visible_drag
         return posing.targets[self.handle] if posing and posing.targets else None
 
     @property
     def _is_followed(self) -> bool:
         """Whether the solver is on its way."""
-        return self._project.pull is not None and self._project.pull.drag is not None
+        posing = self._project.visible_drag
+        return posing is not None and posing.solver is not None
 
     @property
     def followed(self) -> Target | None:

@@ -15,7 +15,7 @@ from app.document import (
 )
 from app.editor.action import do
 from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
-from app.editor.actions.posing.pose_drag import release_drag
+from app.editor.actions.posing.pose_drag import commit_drag_now
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.motion import DisplayedFrame
@@ -49,8 +49,8 @@ def remove_handles(
     *,
     gesture: object | None = None,
 ) -> None:
-    """Delete handles; poses stay, and unfinished drags go on to their rest."""
-    release_drag(session)
+    """Delete handles; poses stay."""
+    commit_drag_now(session)
     command = handle_commands.remove_handles(project.active, identities)
     project.history.do(command, gesture=gesture or object())
     project.selected_handles -= identities

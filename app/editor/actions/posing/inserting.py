@@ -5,9 +5,9 @@ from functools import partial
 
 from app.document import Clip, Pose, PreviewPose, clip_of
 from app.editor import pending_changes
-from app.editor.action import do
 from app.editor.actions import playback
 from app.editor.actions.posing.pose_commit import key_pose_command
+from app.editor.actions.posing.pose_drag import commit_drag_now
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
@@ -21,6 +21,7 @@ INSERTING = JobKind(_("Inserting a key"), _("The key could not be inserted"), "h
 def insert_key(session: Session, project: Project) -> None:
     """Insert a key of the shown pose at the present frame, in each selected layer."""
     playback.stop_playback(session)
+    commit_drag_now(session)
     if project.other_selected_layers:
         here, gesture = playback.current_frame(session, project), object()
         chosen = [project.document.layer(each) for each in project.selected_layers]
@@ -28,14 +29,7 @@ def insert_key(session: Session, project: Project) -> None:
             if (at := layer.source_of(here)) not in layer.key_frames:
                 insert_key_at(session, layer.id, at, gesture)
         return
-    frame = playback.edited_frame(session, project)
-    if any((pull.layer, pull.frame) == (project.active, frame) for pull in project.pulls):
-        # A pending change may make a key there itself.
-        pending_changes.run_when_idle(
-            session, do(insert_key_at, project.active, frame), _("The key")
-        )
-    else:
-        insert_key_at(session, project.active, frame)
+    insert_key_at(session, project.active, playback.edited_frame(session, project))
 
 
 @with_project

@@ -7,11 +7,16 @@ from functools import partial
 from app.document import Pose, Target, keyed_pose_at, segment_time_at
 from app.editor.actions import playback
 from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
-from app.editor.actions.posing.pose_commit import commit_pose
-from app.editor.actions.posing.pose_solver import POSING, step_pose_solver
+from app.editor.actions.posing.pose_commit import POSING, drop_drag
+from app.editor.actions.posing.pose_solver import finish_drag, step_pose_solver
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work.pull import DragStart, Pull, TargetChange, absolute_targets
+from app.editor.work.drag_session import (
+    DragSession,
+    DragStart,
+    TargetChange,
+    absolute_targets,
+)
 from app.texts import _
 from engine.deform import BoundedPull
 
@@ -50,34 +55,37 @@ def _change(
     session: Session,
     project: Project,
     gesture: object | None,
-    change: Callable[[Pull, object], None],
+    change: Callable[[DragSession, object], None],
 ) -> None:
-    """Change the held drag, or begin a drag."""
-    if project.layer_runtime.shown is None:
+    """Change the drag of the present pose, or begin one."""
+    if project.layer_runtime.shown is None or (gesture and gesture is project.ended_gesture):
         return
-    held = project.pull
-    if held is None or not held.is_held:
-        release_drag(session)
-        held = _begin(session, project, gesture or object())
-    change(held, gesture or object())
-    held.position = project.history.position
+    drag = project.visible_drag
+    if drag is None or not drag.is_held:
+        drag = _begin(session, project, gesture)
+    change(drag, gesture or object())
     step_pose_solver(session, project)
 
 
 @with_project
 def release_drag(session: Session, project: Project) -> None:  # noqa: ARG001 - of an action
     """End the drag; the solver goes on until the pose rests."""
-    for pull in project.pulls:
-        pull.is_held = False
+    if project.drag is not None:
+        project.drag.is_held = False
 
 
 @with_project
-def release_drag_forced(session: Session, project: Project) -> None:  # noqa: ARG001 - of an action
+def release_drag_forced(session: Session, project: Project) -> None:
     """End the drag, and keep its targets even if the handles cannot reach them."""
-    for pull in project.pulls:
-        if pull.is_held:
-            pull.is_held = False
-            pull.force_targets()
+    if project.drag is not None and project.drag.is_held:
+        project.drag.force_targets()
+    release_drag(session)
+
+
+@with_project
+def commit_drag_now(session: Session, project: Project) -> None:
+    """End an unfinished drag, and commit its pose at rest."""
+    finish_drag(session, project)
 
 
 def set_targets(session: Session, targets: Mapping[int, Target]) -> None:
@@ -147,34 +155,14 @@ def solve_pose_again(
 
 @with_project
 def revert_drag(session: Session, project: Project, gesture: object) -> None:
-    """Undo the targets of a gesture.
-
-    A drag without other targets ends, and its history step is undone.
-    """
-    for pull in project.pulls:
-        if gesture in pull.target_changes:
-            pull.revert(gesture)
-            pull.is_held = False
-            if not pull.target_changes:
-                cancel_drag(session, project, pull)
-                project.history.revert(pull.gesture)
-
-
-def cancel_drag(session: Session, project: Project, pull: Pull) -> None:
-    """End a drag; its pose in the document stays, and no later pose is committed."""
-    if pull not in project.pending:
-        # The drag has ended together with another cancelled drag.
-        return
-    project.pending.remove(pull)
-    # The job's result is dropped.
-    session.jobs.drop(POSING)
-    step_pose_solver(session, project)
-
-
-def end_drag_at(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
-    """Commit a pose instead of the result of a drag."""
-    cancel_drag(session, project, pull)
-    commit_pose(session, project, pull, pose)
+    """Undo the targets of a gesture; a drag without other targets ends."""
+    drag = project.drag
+    if drag is not None and gesture in drag.target_changes:
+        drag.revert(gesture)
+        drag.is_held = False
+        if not drag.target_changes:
+            drop_drag(session, project, drag)
+            project.history.revert(drag.gesture)
 
 
 def _once(session: Session, change: TargetChange | Mapping[int, Target]) -> None:
@@ -182,8 +170,12 @@ def _once(session: Session, change: TargetChange | Mapping[int, Target]) -> None
     release_drag(session)
 
 
-def _begin(session: Session, project: Project, gesture: object) -> Pull:
-    """Begin a drag of the pose at the present frame."""
+def _begin(session: Session, project: Project, gesture: object | None) -> DragSession:
+    """Begin a drag of the pose at the present frame.
+
+    Changes without a gesture, such as presses of an arrow key, continue an unfinished drag. So does
+    each change before the first pose is found. Any other earlier drag is committed first.
+    """
     playback.stop_playback(session)
     frame, shown = playback.edited_frame(session, project), playback.current_frame(session, project)
     if frame != shown:
@@ -193,34 +185,42 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
             ),
             topic="repeat",
         )
-    here = (project.active, frame)
-    pulls = [pull for pull in project.pulls if (pull.layer, pull.frame) == here]
-    earlier = pulls[-1] if pulls else None
-    start = _start(session, project, earlier)
-    if earlier is not None and earlier.kept is None:
-        # No pose of the earlier drag is visible yet, so the new targets join it.
+    drag = project.visible_drag
+    if drag is not None and drag.newest is None:
         session.jobs.drop(POSING)
-        earlier.clip, earlier.start, earlier.is_held = project.clip, start, True
-        return earlier
-    before = pose_at_playhead(session, project)
-    begun = Pull(
+        drag.clip, drag.start, drag.is_held = project.clip, _start(session, project), True
+        return drag
+    if drag is not None and gesture is None and drag.is_stepped:
+        drag.is_held = True
+        return drag
+    finish_drag(session, project)
+    begun = DragSession(
         clip=project.clip,
         frame=frame,
-        gesture=gesture,
-        start=start,
-        before=before,
+        gesture=gesture or object(),
+        is_stepped=gesture is None,
+        start=_start(session, project),
+        before=pose_at_playhead(session, project),
         is_keyed=session.settings.preferences.auto_key,
-        rests=earlier is None or earlier.is_settled,
+        easing=session.settings.preferences.easing,
     )
     project.pending.append(begun)
+    project.history.before_change = partial(_end_for_change, session, project)
     return begun
 
 
-def _start(session: Session, project: Project, earlier: Pull | None) -> DragStart | None:
+def _end_for_change(session: Session, project: Project) -> None:
+    """Commit the drag before another change of the document; later moves of its hand are void."""
+    drag = project.drag
+    if drag is not None and drag.is_held:
+        project.ended_gesture = drag.gesture
+    finish_drag(session, project)
+
+
+def _start(session: Session, project: Project) -> DragStart | None:
     """Return the start of a drag; None if its in-between is not computed yet.
 
-    With tracks or springs, shown handles differ from the pose, so the in-between is computed. If an
-    earlier drag of the same pose is not at rest, its last targets are used.
+    With tracks or springs, shown handles differ from the pose, so the in-between is computed.
     """
     pose, shown, layer = (
         pose_at_playhead(session, project),
@@ -228,10 +228,6 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> DragStar
         project.layer,
     )
     if pose is not None:
-        if earlier is not None and earlier.kept is not None and earlier.world_targets is not None:
-            is_its_own = earlier.kept.phi is pose.phi
-            targets = {**earlier.world_targets, **earlier.reached} if is_its_own else pose.targets
-            pose = replace(pose, targets=targets)
         return DragStart.of(layer, pose)
     frame = playback.current_frame(session, project)
     if shown is None or not shown.is_current or shown.frame != frame or shown.clip != project.clip:

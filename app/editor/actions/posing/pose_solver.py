@@ -1,30 +1,30 @@
-"""Jobs that solve a pose, a few Newton steps at a time, with each step committed."""
+"""The solver of a drag: jobs of a few Newton steps, until the pose rests and is committed."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from math import inf
 from typing import NamedTuple
 
 from app.document import Clip, Pose, Target, keyed_pose_at, segment_time_at
 from app.editor.actions import playback
-from app.editor.actions.posing.pose_commit import commit_pose
+from app.editor.actions.posing.pose_commit import POSING, commit_drag, drop_drag
+from app.editor.actions.posing.reach_limit import clamp_unreachable_targets
 from app.editor.error_reports import report_failure, run_job
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.work.jobs import JobKind
-from app.editor.work.pull import (
+from app.editor.work.drag_session import (
     MOST_STEPS,
+    DragSession,
     DragStart,
-    Pull,
     TargetChange,
     combine_targets,
     find_changed_handles,
 )
+from app.errors import EXPECTED_ERRORS
 from app.motion import PoseSampler
 from app.solving import DragSolver, Rig, fit_shown_pose
-from app.texts import _
 from engine.deform import BoundedPull
 
-POSING = JobKind(_("Posing"), _("This pose could not be found"), "hand")
 # During a drag: the most Newton steps of one job, and the seconds after which the job begins no
 # further step, so that the next picture shows its result.
 STEPS, HASTE = 2, 0.004
@@ -32,64 +32,84 @@ STEPS, HASTE = 2, 0.004
 REST = 0.012
 
 
+def update_drag(session: Session, project: Project) -> None:
+    """Show the newest pose of the drag, and commit it when it rests; once a frame."""
+    drag = project.drag
+    if drag is None:
+        return
+    is_here = is_drag_at_playhead(session, project, drag)
+    if drag.is_held and not is_here:
+        drag.is_held, project.ended_gesture = False, drag.gesture
+    if is_here or drag.preview is None:
+        drag.preview = drag.newest
+    if not drag.is_held and _is_final(project, drag) and drag.newest is not None:
+        commit_drag(session, project, drag, drag.newest)
+    else:
+        step_pose_solver(session, project)
+
+
+def finish_drag(session: Session, project: Project) -> None:
+    """Solve an unfinished drag to rest on this thread, and commit it.
+
+    Another change of the document follows. So the drag ends even if it is held.
+    """
+    drag = project.drag
+    if drag is None:
+        return
+    session.jobs.drop(POSING)
+    drag.is_held = False
+    try:
+        while not _is_final(project, drag):
+            pace = _pace(drag)._replace(seconds=inf)
+            _take(project, drag, _work(session, project, drag, pace)())
+    except EXPECTED_ERRORS as error:
+        drop_drag(session, project, drag)
+        report_failure(session, POSING.complaint, error)
+        return
+    if drag.newest is not None:
+        commit_drag(session, project, drag, drag.newest)
+
+
+def _is_final(project: Project, drag: DragSession) -> bool:
+    """Return whether the pose rests, with unreachable targets clamped; for a released drag."""
+    if drag.is_at_rest and drag.dragged_targets:
+        clamp_unreachable_targets(project, drag)
+    return drag.is_at_rest
+
+
 def step_pose_solver(session: Session, project: Project) -> None:
-    """Queue the next steps of the most urgent drag, unless such a job is queued."""
-    if POSING in session.jobs.kinds:
+    """Queue the next steps of the drag, unless such a job is queued."""
+    drag = project.drag
+    if drag is None or drag.is_at_rest or POSING in session.jobs.kinds:
         return
-    moving = [pull for pull in project.pulls if not pull.is_at_rest]
-    if not moving:
-        return
-
-    def urgency(pull: Pull) -> tuple[bool, bool, bool]:
-        return (
-            pull.is_held,
-            is_drag_at_playhead(session, project, pull),
-            pull.is_in(project.history),
-        )
-
-    pull = max(moving, key=urgency)
     # A drag at another frame goes on once the shown frame is final.
     if not (
-        pull.is_held
-        or is_drag_at_playhead(session, project, pull)
+        drag.is_held
+        or is_drag_at_playhead(session, project, drag)
         or is_display_final(session, project)
     ):
         return
 
     def failed(error: Exception) -> None:
-        if pull in project.pending:
-            project.pending.remove(pull)
+        if drag in project.pending:
+            drop_drag(session, project, drag)
             report_failure(session, POSING.complaint, error)
 
-    runtime = project.layer_runtimes.get(pull.layer)
-    begin = partial(
-        _begin,
-        pull.clip,
-        pull.frame,
-        pull.before,
-        None if runtime is None else runtime.rig,
-        None if runtime is None else runtime.store.sampler,
-    )
-    aim = pull.targets if pull.targets is not None else tuple(pull.target_changes.values())
-    hands = tuple(pull.dragged_targets.values())
-    work = partial(
-        _take_steps,
-        pull.drag or begin,
-        aim,
-        hands,
-        pull.dragged_handles,
-        _pace(pull),
-        session.clock,
-    )
-    run_job(session, POSING, work, partial(_note, session, project, pull), failed)
+    def done(steps: _Steps) -> None:
+        if session.project is project and drag in project.pending:
+            session.solver_seconds = steps.seconds
+            _take(project, drag, steps)
+            update_drag(session, project)
+
+    run_job(session, POSING, _work(session, project, drag, _pace(drag)), done, failed)
 
 
-def is_drag_at_playhead(session: Session, project: Project, pull: Pull) -> bool:
+def is_drag_at_playhead(session: Session, project: Project, drag: DragSession) -> bool:
     """Return whether the playhead rests on a drag's frame, where all its poses are shown."""
-    frame = playback.current_frame(session, project)
-    if project.playhead.since is not None or pull.layer not in project.layer_runtimes:
+    if project.playhead.since is not None:
         return False
-    return project.document.layer(pull.layer).source_of(frame) == pull.frame
+    frame = playback.current_frame(session, project)
+    return project.document.layer(drag.layer).source_of(frame) == drag.frame
 
 
 def is_display_final(session: Session, project: Project) -> bool:
@@ -113,11 +133,11 @@ class _Pace(NamedTuple):
     seconds: float
 
 
-def _pace(pull: Pull) -> _Pace:
+def _pace(drag: DragSession) -> _Pace:
     """Return the pace: each step is shown during a drag; after the release the solver hurries."""
-    if pull.is_rigid:
+    if drag.is_rigid:
         return _Pace(0, 0.0)
-    return _Pace(STEPS, HASTE) if pull.steps == 0 else _Pace(MOST_STEPS, REST)
+    return _Pace(STEPS, HASTE) if drag.steps == 0 else _Pace(MOST_STEPS, REST)
 
 
 class _Steps(NamedTuple):
@@ -126,7 +146,7 @@ class _Steps(NamedTuple):
     `start` is set if the job had to compute it.
     """
 
-    drag: DragSolver
+    solver: DragSolver
     targets: Mapping[int, Target]
     hands: tuple[BoundedPull, ...]
     taken: int
@@ -134,19 +154,32 @@ class _Steps(NamedTuple):
     start: DragStart | None
 
 
+def _work(
+    session: Session, project: Project, drag: DragSession, pace: _Pace
+) -> Callable[[], _Steps]:
+    """Return the function that takes the next steps of a drag."""
+    runtime = project.layer_runtimes[drag.layer]
+    begin = partial(_begin, drag.clip, drag.frame, drag.before, runtime.rig, runtime.store.sampler)
+    aim = drag.targets if drag.targets is not None else tuple(drag.target_changes.values())
+    hands = tuple(drag.dragged_targets.values())
+    return partial(
+        _take_steps, drag.solver or begin, aim, hands, drag.dragged_handles, pace, session.clock
+    )
+
+
 def _take_steps(
-    drag: DragSolver | Callable[[], tuple[DragSolver, Pose]],
+    solver: DragSolver | Callable[[], tuple[DragSolver, Pose]],
     aim: Mapping[int, Target] | Sequence[TargetChange],
     hands: tuple[BoundedPull, ...],
     pulled: frozenset[int],
     pace: _Pace,
     clock: Callable[[], float],
 ) -> _Steps:
-    """Advance a drag, or begin it; on the worker thread."""
+    """Advance a drag, or begin it."""
     begun, start = clock(), None
-    if not isinstance(drag, DragSolver):
-        drag, pose = drag()
-        start = DragStart.of(drag.rig.layer, pose)
+    if not isinstance(solver, DragSolver):
+        solver, pose = solver()
+        start = DragStart.of(solver.rig.layer, pose)
     if isinstance(aim, Mapping):
         targets = aim
     elif start is not None:
@@ -155,11 +188,11 @@ def _take_steps(
         raise ValueError("a drag that goes on has targets")
     taken = 0
     while taken < pace.most and (
-        taken == 0 or not (drag.is_over or clock() - begun >= pace.seconds)
+        taken == 0 or not (solver.is_over or clock() - begun >= pace.seconds)
     ):
-        drag = drag.step_towards(targets, 1, hands, pulled)
+        solver = solver.step_towards(targets, 1, hands, pulled)
         taken += 1
-    return _Steps(drag, targets, hands, taken, clock() - begun, start)
+    return _Steps(solver, targets, hands, taken, clock() - begun, start)
 
 
 def _begin(
@@ -175,21 +208,14 @@ def _begin(
     return DragSolver.begin(rig, pose), pose
 
 
-def _note(session: Session, project: Project, pull: Pull, steps: _Steps) -> None:
-    """Store the result of a job, and queue the next job if the drag is not at rest."""
-    if session.project is not project or pull not in project.pending:
-        return
-    session.diagnostics.note_solver_time(steps.seconds)
-    if pull.layer in project.layer_runtimes:
-        project.layer_runtimes[pull.layer].rig = steps.drag.rig
-    if pull.start is None:
-        pull.start = steps.start
-        pull.update_targets()
+def _take(project: Project, drag: DragSession, steps: _Steps) -> None:
+    """Store the result of some steps."""
+    project.layer_runtimes[drag.layer].rig = steps.solver.rig
+    if drag.start is None:
+        drag.start = steps.start
+        drag.update_targets()
     towards = (steps.targets, steps.hands)
-    if (pull.targets, tuple(pull.dragged_targets.values())) == towards:
-        pull.steps += steps.taken
-    pull.drag, pull.solved = steps.drag, towards
-    newest = pull.take(steps.drag.make_pose(steps.targets))
-    if pull.kept is None or is_drag_at_playhead(session, project, pull):
-        commit_pose(session, project, pull, newest)
-    step_pose_solver(session, project)
+    if (drag.targets, tuple(drag.dragged_targets.values())) == towards:
+        drag.steps += steps.taken
+    drag.solver, drag.solved = steps.solver, towards
+    drag.take(steps.solver.make_pose(steps.targets))

@@ -7,7 +7,7 @@ from app.editor.action import do
 from app.editor.actions import playback
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work.pull import Pull
+from app.editor.work.drag_session import DragSession, StoppedDrag
 from app.texts import N_, _, ngettext
 
 # Relaxes the limits, and drags handles once more to their original targets.
@@ -16,25 +16,22 @@ STOPPED_AT_LIMIT = N_("{handle} stopped at its stretch limit.")
 STOPPED_BY_HANDLES = N_("{handle} stopped where the other handles hold the shape.")
 
 
-def clamp_unreachable_targets(session: Session, project: Project, loosen: RelaxLimits) -> None:
-    """Clamp the targets of released drags whose pose rests; once a frame."""
-    for pull in project.pulls:
-        if pull.dragged_targets and pull.is_at_rest and not pull.is_held:
-            asked, places = pull.world_targets, pull.reached
-            pull.release()
-            if asked is not None and pull.is_in(project.history):
-                _show_limit_notice(session, pull, {i: asked[i] for i in places}, places, loosen)
+def clamp_unreachable_targets(project: Project, drag: DragSession) -> None:
+    """Clamp the targets of a drag whose pose rests, and note which handles stopped before them."""
+    asked, places = drag.world_targets, drag.reached
+    drag.clamp_targets()
+    if asked is not None:
+        project.stopped_drag = StoppedDrag(drag, {i: asked[i] for i in places}, places)
 
 
-def _show_limit_notice(
-    session: Session,
-    pull: Pull,
-    asked: Mapping[int, Target],
-    places: Mapping[int, Target],
-    loosen: RelaxLimits,
-) -> None:
-    """Show why handles stopped before their targets, and offer the remedy."""
-    layer, pose = pull.clip.layer, pull.newest
+@with_project
+def show_stopped_drag(session: Session, project: Project, loosen: RelaxLimits) -> None:
+    """Show why handles of the last drag stopped before their targets, and offer the remedy."""
+    stopped, project.stopped_drag = project.stopped_drag, None
+    if stopped is None:
+        return
+    drag, asked, places = stopped
+    layer, pose = drag.clip.layer, drag.newest
     lacks = {i: abs(place.position - asked[i].position) for i, place in places.items()}
     short = [i for i, lack in lacks.items() if misses_target(layer, lack)]
     if not short or pose is None:
@@ -63,7 +60,7 @@ def _show_limit_notice(
             text,
             topic="stopped",
             label=_("Loosen"),
-            action=do(_relax_limits, pull.layer, pull.frame, asked, loosen),
+            action=do(_relax_limits, drag.layer, drag.frame, asked, loosen),
         )
 
 

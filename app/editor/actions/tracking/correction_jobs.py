@@ -40,10 +40,9 @@ def next_correction_jobs(session: Session, project: Project) -> Iterator[Job]:
 
 def correction_jobs_for_shown_frame(session: Session, project: Project) -> Iterator[Job]:
     """Yield jobs for the shown frame's correction, and for base motions that drags need."""
-    # Pose drags come first, except drags that wait for the shown frame.
-    if not (project.pulls and session.settings.prepares_ahead) or is_track_drag_pending(
-        session, project
-    ):
+    # A visible pose drag comes first.
+    is_posed = session.settings.prepares_ahead and project.visible_drag is not None
+    if not is_posed or is_track_drag_pending(session, project):
         yield from _follow(session, project)
         yield from _ground(session, project)
 

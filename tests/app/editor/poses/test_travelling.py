@@ -326,20 +326,19 @@ def test_selected_handles_alone_take_over_from_another_layer(session):
     assert now["knee"] != pytest.approx(was["knee"], abs=1)
 
 
-def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
+def test_a_copy_has_the_pose_at_rest_at_once(session):
     editing.select_handles(session, frozenset({2}))
     nudge_handles(session, 13 + 3j)
-    (pull,) = session.project.pulls
-    while pull.kept is None:
+    drag = session.project.drag
+    while drag.preview is None:
         run_update_steps(session)
         assert session.jobs.wait_until_idle()
         session.jobs.deliver()
-    assert not pull.is_settled
+    assert not drag.is_at_rest
     copying.copy_pose_or_keys(session)
     set_active_layer(session, identity(session, "far leg"))
     pasting.paste_copied(session)
     settle(session)
-    # What was copied has come to rest in the copy, too.
     close(ways(session, "far leg", 0), ways(session, "near leg", 0))
 
 

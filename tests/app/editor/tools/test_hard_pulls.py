@@ -211,7 +211,7 @@ def test_a_pose_that_rests_when_the_hand_lets_go_is_kept(session):
     project = session.project
     hand, out = outwards(project)
     asked = drag(session, hand, -0.05 * out, rests=40)
-    assert project.pull.is_at_rest
+    assert project.visible_drag.is_at_rest
     phi = project.layer.key(0).pose.phi
     tool_pointer.release_pointer(session, asked)
     run_update_steps(session)

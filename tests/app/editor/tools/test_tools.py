@@ -56,7 +56,7 @@ def state(project):
         unkeyed,
         project.selected_handles,
         project.selected_frames,
-        project.pull,
+        project.visible_drag,
     )
 
 

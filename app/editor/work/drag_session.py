@@ -1,12 +1,13 @@
-"""A pose drag: a requested pose, from the press until the pose rests."""
+"""A drag of a pose, from the press until the pose rests and becomes a key."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Document, History, Layer, Pose, PoseReplacement, Target
+from app.document import Clip, Command, Document, Easing, Layer, Pose, Target, key_commands
 from app.editor.work.derived import Derived
 from app.editor.work.pending_change import PendingChange
 from app.solving import DragSolver
@@ -54,26 +55,30 @@ TargetChange = Callable[[DragStart, Mapping[int, Target]], Mapping[int, Target]]
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Pull(PendingChange):
-    """A pose drag of a layer at a frame: targets of handles, and the solver's progress.
+class DragSession(PendingChange):
+    """A drag of a layer's pose at a frame: targets of handles, and the solver's progress.
 
-    It lives until the pose rests, independent of the playhead and of other edits. Each pose of the
-    solver replaces the previous one, in its own history step and in all later ones.
+    It lives until the pose rests, independent of the playhead. Meanwhile its `preview` is displayed
+    on top of the document. Then the pose becomes one undo step.
 
     Attributes
     ----------
     clip : Clip
         The layer at the start, in its scene's time; the solver works on it.
     frame : int
-        The present frame of the pose: it moves with its key.
+        The frame of the key.
     gesture : object
         Edits of one gesture are one undo step.
     start : DragStart, optional
         None while the in-between at the start is not computed.
     before : Pose, optional
         The pose of the key or the frame before the drag; None for a new key.
+    is_stepped : bool
+        Whether it has no gesture: it consists of single steps.
     is_keyed : bool
         Whether a key holds the pose: the auto-key setting at the start.
+    easing : Easing
+        Of a new key.
     target_changes : dict of object to TargetChange
         By gesture, in order; each change gets the targets before it.
     dragged_targets : dict of object to BoundedPull
@@ -81,15 +86,13 @@ class Pull(PendingChange):
     translations : dict of object to complex
         Moves of the whole layer, by gesture. They are applied to the solver's result exactly and
         do not change it.
-    rests : bool
-        Whether the pose at the start is at rest: a mere move keeps it.
     targets : mapping of int to Target, optional
         The result of all changes; None without a start.
     dragged_handles : frozenset of int
         Ids of the handles with changed targets.
-    position : int
-        Of the history at the last change of targets.
-    drag : DragSolver, optional
+    is_held : bool
+        Whether it goes on: until the release.
+    solver : DragSolver, optional
         The solver's state; None until its first steps are done.
     solved : tuple of mapping of int to Target and tuple of BoundedPull, optional
         The targets and the bounded pulls of the solver's last steps.
@@ -99,45 +102,58 @@ class Pull(PendingChange):
         The solver's pose, without translations.
     newest : Pose, optional
         The solver's pose with the translations.
-    kept : Pose, optional
-        The committed pose; None before the first commit.
-    tried : Pose, optional
-        The pose whose in-betweens are prepared, after the release.
-    trial : Derived
-        The layer's clip with `tried`, cached since each frame asks for it several times.
-    ready : Pose, optional
-        The newest pose with prepared in-betweens, committed when the playhead leaves.
-    is_left : bool
-        Whether the playhead is elsewhere.
+    preview : Pose, optional
+        The displayed pose: the newest one at the playhead. When the playhead leaves, it stays until
+        the pose rests, so that the in-betweens stay the same.
     """
 
     label: str = _("Posing")
     clip: Clip
     frame: int
     gesture: object
+    is_stepped: bool = False
     start: DragStart | None
     before: Pose | None
     is_keyed: bool
+    easing: Easing
     target_changes: dict[object, TargetChange] = field(default_factory=dict)
     dragged_targets: dict[object, BoundedPull] = field(default_factory=dict)
     translations: dict[object, complex] = field(default_factory=dict)
-    rests: bool = True
     targets: Mapping[int, Target] | None = None
     dragged_handles: frozenset[int] = frozenset()
-    position: int = 0
     is_held: bool = True
-    drag: DragSolver | None = None
+    solver: DragSolver | None = None
     solved: tuple[Mapping[int, Target], tuple[BoundedPull, ...]] | None = None
     steps: int = 0
     found: Pose | None = None
     newest: Pose | None = None
-    kept: Pose | None = None
-    tried: Pose | None = None
-    trial: Derived[tuple[Document, Pose, Pose], Clip | None] = field(
+    preview: Pose | None = None
+    _previewed: Derived[tuple[Document, Pose], Document | None] = field(
         default_factory=lambda: Derived(None)
     )
-    ready: Pose | None = None
-    is_left: bool = False
+
+    @property
+    def layer(self) -> int:
+        return self.clip.layer.id
+
+    @property
+    def command(self) -> Command:
+        """The command that keys the preview."""
+        return Command(_("Move") if self.translations else _("Pose"), self.applied_to)
+
+    def applied_to(self, document: Document) -> Document:
+        """Return the document with the preview as a key."""
+        pose = self.preview
+        if pose is None or not self.is_keyed:
+            return document
+        if not self._previewed.follows((document, pose)):
+            command = (
+                key_commands.replace_key_pose(self.layer, self.frame, pose)
+                if self.frame in document.layer(self.layer).key_frames
+                else key_commands.insert_key(self.layer, self.frame, pose, easing=self.easing)
+            )
+            self._previewed.set((document, pose), command(document))
+        return self._previewed.value or document
 
     def change_targets(
         self, gesture: object, change: TargetChange, hand: BoundedPull | None = None
@@ -156,12 +172,11 @@ class Pull(PendingChange):
         if pose is not None:
             self.take(pose)
 
-    def take(self, pose: Pose) -> Pose:
-        """Store the solver's pose; return it with the translations."""
+    def take(self, pose: Pose) -> None:
+        """Store the solver's pose, and the same with the translations."""
         way = sum(self.translations.values())
         self.found = pose
         self.newest = _moved_pose(self.clip.layer, pose, way) if way else pose
-        return self.newest
 
     def revert(self, gesture: object) -> None:
         """Remove a gesture's targets and translation."""
@@ -176,12 +191,12 @@ class Pull(PendingChange):
         self.dragged_targets = {}
         self.steps = 0
 
-    def release(self) -> None:
+    def clamp_targets(self) -> None:
         """Move the dragged targets to the reached places; a pose at rest stays."""
-        if self.drag is None or self.targets is None:
+        if self.solver is None or self.targets is None:
             return
         before, hands = self.targets, self.dragged_targets
-        self.drag, places = self.drag.release(before, tuple(hands.values()))
+        self.solver, places = self.solver.release(before, tuple(hands.values()))
         moves = {i: place.position - before[i].position for i, place in places.items()}
         for gesture in hands:
             others = {i for other in hands if other is not gesture for i in hands[other].handles}
@@ -193,14 +208,15 @@ class Pull(PendingChange):
         found = {**before, **places}
         if all(abs(self.targets[i].position - found[i].position) < ROUNDING for i in found):
             self.solved = (self.targets, ())
-            self.take(self.drag.make_pose(self.targets))
+            self.take(self.solver.make_pose(self.targets))
 
     @property
     def reached(self) -> Mapping[int, Target]:
         """Targets of dragged handles after a release at this moment, by id."""
-        if self.drag is None or self.targets is None or not self.dragged_targets:
+        if self.solver is None or self.targets is None or not self.dragged_targets:
             return {}
-        return self._moved(self.drag.release(self.targets, tuple(self.dragged_targets.values()))[1])
+        hands = tuple(self.dragged_targets.values())
+        return self._moved(self.solver.release(self.targets, hands)[1])
 
     @property
     def world_targets(self) -> Mapping[int, Target] | None:
@@ -221,64 +237,26 @@ class Pull(PendingChange):
             self.dragged_handles = find_changed_handles(self.start, self.target_changes.values())
 
     @property
-    def layer(self) -> int:
-        return self.clip.layer.id
-
-    @property
     def is_rigid(self) -> bool:
-        """Whether the drag only moves a pose at rest, so that nothing needs solving."""
-        return (
-            self.rests
-            and bool(self.translations)
-            and self.translations.keys() == self.target_changes.keys()
-        )
+        """Whether the drag only moves a pose, so that nothing needs solving."""
+        return bool(self.translations) and self.translations.keys() == self.target_changes.keys()
 
     @property
     def is_at_rest(self) -> bool:
         """Whether the solver has found the final pose."""
         if self.is_rigid:
             return self.found is not None
-        is_over = self.drag is not None and self.drag.is_over
+        is_over = self.solver is not None and self.solver.is_over
         towards = (self.targets, tuple(self.dragged_targets.values()))
         return self.steps >= MOST_STEPS or (is_over and self.solved == towards)
 
-    @property
-    def is_settled(self) -> bool:
-        """Whether the final pose is committed, and released targets are clamped."""
-        is_done = self.is_held or not self.dragged_targets
-        return self.is_at_rest and self.kept is self.newest and is_done
 
-    def is_in(self, history: History) -> bool:
-        """Return whether the present document has a pose of this drag, or will get the first."""
-        if self.kept is None:
-            return True
-        layers = history.document.layers
-        layer = next((layer for layer in layers if layer.id == self.layer), None)
-        if layer is None:
-            return False
-        poses = list(layer.poses)
-        if history.preview_pose is not None:
-            poses.append(history.preview_pose.pose)
-        return any(pose.phi is self.kept.phi for pose in poses)
+class StoppedDrag(NamedTuple):
+    """A drag with the wanted targets of its handles, and those that they reached, by handle id."""
 
-    def brought_to(self, pose: Pose) -> PoseReplacement:
-        """Return the function that puts a pose of this drag into a layer of any history step."""
-        then = {handle.id: handle.position for handle in self.clip.layer.handles}
-
-        def of(layer: Layer, earlier: Pose) -> Pose:
-            now = {handle.id: handle.position for handle in layer.handles}
-            if now == then and earlier.targets.keys() == pose.targets.keys() == then.keys():
-                return pose
-            # Handles have changed meanwhile; new handles have no targets yet.
-            start = DragStart.of(layer, replace(pose, targets=earlier.targets))
-            targets = {}
-            for identity, position in now.items():
-                here = replace(start.targets[identity], position=start.places[identity])
-                is_same = then.get(identity) == position and identity in pose.targets
-                targets[identity] = pose.targets[identity] if is_same else here
-            return replace(pose, targets=targets)
-
-        return of
+    drag: DragSession
+    asked: Mapping[int, Target]
+    reached: Mapping[int, Target]
 
 
 def _moved(
