@@ -110,6 +110,7 @@ def show(
         correction = corrected.at(corrected.clip, frame)
     elif corrected is not None:
         correction, is_rough = corrected.at(clip, frame), not corrected.is_exact(clip, frame)
+    is_key = pose is None
     pose = pose or keyed_pose_at(clip, moment)
     fitting = [store for store in stores if store.mesh.source is domain]
     exact = [store for store in fitting if pose is not None or store.is_exact(clip, frame)]
@@ -130,7 +131,12 @@ def show(
         and earlier.vertices.triangles is triangles
     ):
         return earlier if earlier.frame == frame else replace(earlier, frame=frame)
-    vertices = store.vertices(clip, frame, near or pose, None if near else correction)
+    vertices = None
+    if is_key and near is None and not is_rough:
+        vertices = store.vertices(clip, frame, None, correction)
+    if vertices is None:
+        is_rough = is_rough or (correction is not None and near is None)
+        vertices = store.vertices(clip, frame, near or pose, None if near else correction)
     if vertices is None:
         raise ValueError("what is exact has vertices")
     return DisplayedFrame(

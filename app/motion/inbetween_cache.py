@@ -146,10 +146,9 @@ class InbetweenCache:
         """
         if self._moved is None or self._moved[0] is not correction:
             after, before = (self._corrected(clip, frame, correction), self.vertices(clip, frame))
-            moved = np.zeros(len(self.mesh.domain.mesh.vertices), np.complex128)
-            if after is not None and before is not None:
-                moved = after.positions - before.positions
-            self._moved = correction, moved
+            if after is None or before is None:
+                return np.zeros(len(self.mesh.domain.mesh.vertices), np.complex128)
+            self._moved = correction, after.positions - before.positions
         return self._moved[1]
 
     def _uncorrected(
