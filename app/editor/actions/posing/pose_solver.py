@@ -97,7 +97,7 @@ def step_pose_solver(session: Session, project: Project) -> None:
 
     def done(steps: _Steps) -> None:
         if session.project is project and drag in project.pending:
-            session.solver_seconds = steps.seconds
+            session.diagnostics.note_solver_time(steps.seconds)
             _take(project, drag, steps)
             update_drag(session, project)
 
