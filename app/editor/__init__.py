@@ -36,21 +36,13 @@ from app.editor.parts.timeline import (
 )
 from app.editor.project import Project as Project
 from app.editor.session import (
-    AttachOverlay as AttachOverlay,
-    BoneOverlay as BoneOverlay,
-    BoxOverlay as BoxOverlay,
     CurveKind as CurveKind,
     CutTool as CutTool,
     HeatMap as HeatMap,
     Hint as Hint,
-    KnifeOverlay as KnifeOverlay,
-    Mark as Mark,
     MaterialTool as MaterialTool,
-    NumericEntryOverlay as NumericEntryOverlay,
     Overlays as Overlays,
-    RotationOverlay as RotationOverlay,
     Session as Session,
-    StrokeOverlay as StrokeOverlay,
     Tint as Tint,
     TutorialStage as TutorialStage,
     TutorialState as TutorialState,

@@ -1,6 +1,6 @@
 """The state of one window: all values that may change, without drawing."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import wraps
 from pathlib import Path
@@ -8,6 +8,7 @@ from typing import Concatenate, Literal, ParamSpec, Protocol
 
 from app.document import Baseline, Variant
 from app.editor.action import Action
+from app.editor.overlay_shapes import Cursor, OverlayShape
 from app.editor.parts.clipboard import Clipboard
 from app.editor.parts.diagnostics import Diagnostics
 from app.editor.parts.dialogs import DialogState, FileDialog
@@ -53,81 +54,6 @@ class CompareView:
     is_side_by_side: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BoxOverlay:
-    """A selection box in the scene, from corner to corner."""
-
-    corner: complex
-    opposite: complex
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RotationOverlay:
-    """The rotation of the shape around a handle and the pointer's rotation, in radians."""
-
-    handle: int
-    angle: float
-    swept_angle: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NumericEntryOverlay:
-    """Text typed during a drag, and the locked axis through a place, if any."""
-
-    place: complex
-    direction: complex | None
-    text: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class StrokeOverlay:
-    """An unfinished stroke of the brush, in the scene."""
-
-    points: tuple[complex, ...]
-    radius: float
-    keeps: bool | None  # None for a stroke that neither keeps nor removes
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class KnifeOverlay:
-    """An unfinished line of the knife, in the scene."""
-
-    points: tuple[complex, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AttachOverlay:
-    """The line from an anchor to the pointer, and the layer there, which may be refused."""
-
-    start: complex
-    end: complex
-    parent: int | None
-    is_refused: bool
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BoneOverlay:
-    """The line from a handle to the pointer or to another handle; the bone may be refused.
-
-    Ends are in the scene.
-    """
-
-    start: complex
-    end: complex
-    is_refused: bool
-
-
-Mark = (
-    BoxOverlay
-    | RotationOverlay
-    | NumericEntryOverlay
-    | StrokeOverlay
-    | KnifeOverlay
-    | AttachOverlay
-    | BoneOverlay
-)
-
-
 @dataclass(frozen=True, slots=True)
 class Hint:
     """A hint about the pointer: gesture and effect as one text, and the key to hold."""
@@ -152,8 +78,15 @@ class ActiveTool(Protocol):
         """End, and undo all edits."""
 
     @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        """The tool's overlays over the drawing."""
+    def cursor(self) -> Cursor:
+        """The cursor until the release."""
+
+    @property
+    def snaps(self) -> bool:
+        """Whether it moves in steps while Ctrl is held."""
+
+    def shapes(self, place: complex, em: float) -> Iterable[OverlayShape]:
+        """Return what the tool draws over the drawing, with the pointer at a place."""
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:

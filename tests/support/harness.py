@@ -21,13 +21,13 @@ from app.editor.actions.project_files import files, saving
 from app.editor.parts.settings import SessionSettings
 from app.editor.project import Project
 from app.editor.session import Session
+from app.editor.tools.rotate_tool import RING
 from app.editor.work.jobs import Jobs
 from app.motion import CorrectedFrames
 from app.render.gpu.context import create_context
 from app.render.renderer import Renderer
 from app.storage.preferences import Preferences
 from app.ui.style.theme import FONT_SIZE
-from app.ui.viewport.interaction.gizmos import RADIUS
 from app.ui.viewport.screen import GRIP
 from app.ui.window.window import Window
 
@@ -168,7 +168,7 @@ class Harness:
 
     def ring(self, project: Project) -> float:
         """Return the radius of the ring around the selected handle, in pixels of the picture."""
-        return RADIUS * self._em / project.view(self.session.screen).scale
+        return RING * self._em / project.view(self.session.screen).scale
 
     def grip(self, project: Project) -> float:
         """Return the radius within which a handle is grabbed, in pixels of the picture."""

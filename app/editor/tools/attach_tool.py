@@ -1,17 +1,19 @@
 """Tool that attaches the active layer to a parent, by a drag from its anchor."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Self
 
 from app.editor.actions import playback
 from app.editor.layering.layer_list import is_layer_at, layer_at
 from app.editor.layering.parenting import attach_layer, is_same_or_descendant
+from app.editor.overlay_shapes import CircleShape, ColourRole, LineShape, OverlayShape
 from app.editor.project import Project
-from app.editor.session import AttachOverlay, Hint, Mark, Session
+from app.editor.session import Hint, Session
 from app.editor.tools.anchor_tool import AnchorTool
 from app.editor.tools.pose_tool import PoseTool
 from app.editor.tools.select_tools import PickLayerTool
-from app.editor.tools.tool import PointerHit, Tool, to_scene
+from app.editor.tools.tool import PointerHit, Tool, scene_outlines, to_scene
 from app.texts import _
 
 FREE_HAND = (PickLayerTool, PoseTool, AnchorTool)
@@ -79,19 +81,19 @@ class AttachTool(Tool):
             text = _("Let go of the anchor over another layer to attach this layer.")
             session.notices.show(text, topic="joint")
 
-    @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        """The line to the pointer, and the layer under it."""
+    def shapes(self, _place: complex, em: float) -> Iterable[OverlayShape]:
+        """Return the line to the pointer, and the outline of the layer under it."""
         if not self.moved:
-            return ()
-        return (
-            AttachOverlay(
-                start=self.spot.place,
-                end=self.place,
-                parent=self.parent,
-                is_refused=self.is_circle,
-            ),
-        )
+            return
+        role: ColourRole = "danger" if self.is_circle else "accent"
+        own, runtimes = self.project.layer_runtime.shown, self.project.layer_runtimes
+        parent = None if self.parent is None else runtimes[self.parent].shown
+        if own is not None and parent is not None:
+            for loop in scene_outlines(parent):
+                points = own.placement.inverse.apply(loop).tolist()
+                yield LineShape(points=points, role=role, closed=True)
+        yield LineShape(points=[self.spot.place, self.place], role=role)
+        yield CircleShape(centre=self.place, radius=0.45 * em, role=role, width=0.16)
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:

@@ -1,11 +1,13 @@
 """Tool that moves the mirror axis of poses."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Self
 
+from app.editor.overlay_shapes import OverlayShape
 from app.editor.poses import flipping
 from app.editor.project import Project
-from app.editor.session import Hint, Mark, NumericEntryOverlay, Session
+from app.editor.session import Hint, Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool
 from app.texts import _
@@ -15,6 +17,7 @@ from app.texts import _
 class MirrorAxisTool(Tool):
     """The pointer moves the axis; the last flipped poses are flipped again at the release."""
 
+    cursor = "resize"
     axis: float  # the axis before the drag
     start: complex  # place of the press
     place: complex  # place of the pointer
@@ -51,14 +54,8 @@ class MirrorAxisTool(Tool):
         """Flip the last flipped poses again."""
         flipping.flip_pose_again(session, gesture=self)
 
-    @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        """The typed text."""
-        if not self.typed.text:
-            return ()
-        return (
-            NumericEntryOverlay(place=self.start, direction=None, text=self.typed.describe("px")),
-        )
+    def shapes(self, _place: complex, _em: float) -> Iterable[OverlayShape]:
+        return self.typed.shapes(self.start, "px") if self.typed.text else ()
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:

@@ -20,8 +20,13 @@ from app.texts import _
 class MoveTool(PoseTool):
     """The pointer moves a layer; `last` is the active layer before the press."""
 
+    cursor = "move"
     last: int
     is_free: bool  # whether the layer can be moved
+
+    @classmethod
+    def mode(cls, session: Session, _project: Project) -> str:
+        return _("Moving the whole layer") if session.moves else ""
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:

@@ -4,10 +4,13 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
+from app.editor.overlay_shapes import LineShape, OverlayShape, TagShape
+
 # Typed pixels have x to the right and y down; the scene's y goes up.
 AXES: Final[dict[str, complex]] = {"x": 1, "y": -1j}
 ERASE: Final = "\b"
 LONGEST = 12  # digits
+FAR = 1e5  # pixels: half the length of the line that shows a locked axis
 
 
 @dataclass(slots=True)
@@ -57,3 +60,11 @@ class NumericEntry:
         """Return the typed text for display beside the pointer; empty if nothing is typed."""
         number = f"{self.text.replace('-', '−') or '…'} {unit}" if self.text else ""
         return " ".join(part for part in (self.axis.upper(), number) if part)
+
+    def shapes(self, start: complex, unit: str) -> list[OverlayShape]:
+        """Return the locked axis through a place, and the typed text beside the pointer."""
+        text, direction = self.describe(unit), self.direction
+        if not text:
+            return []
+        ends = [] if direction is None else [start - FAR * direction, start + FAR * direction]
+        return [LineShape(points=ends, width=0.12), TagShape(text=text)]

@@ -3,7 +3,7 @@
 If the row of a handle's track is selected, the drag keys the track or is recorded.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self
 
@@ -23,8 +23,9 @@ from app.editor.actions.tracking.track_dragging import (
     draggable_track,
 )
 from app.editor.actions.tracking.track_space import track_target
+from app.editor.overlay_shapes import OverlayShape
 from app.editor.project import Project
-from app.editor.session import Hint, Mark, NumericEntryOverlay, Session
+from app.editor.session import Hint, Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool, to_scene
 from app.editor.work.drag_session import DragStart
@@ -192,14 +193,12 @@ class PoseTool(Tool):
             playback.seek(session, self.stood)
         super(PoseTool, self).cancel(session)
 
-    @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        """The typed text; the handles show the rest."""
-        entry = self.entry
-        if not (entry.text or entry.axis):
-            return ()
-        text = entry.describe("px")
-        return (NumericEntryOverlay(place=self.start, direction=entry.direction, text=text),)
+    @classmethod
+    def mode(cls, session: Session, _project: Project) -> str:
+        return _("Recording the next drag of a handle") if session.records else ""
+
+    def shapes(self, _place: complex, _em: float) -> Iterable[OverlayShape]:
+        return self.entry.shapes(self.start, "px")
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:

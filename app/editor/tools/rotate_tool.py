@@ -5,7 +5,7 @@ If the row of the handle's track is selected, the track is keyed and the pose st
 
 import cmath
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Self
 
@@ -19,14 +19,23 @@ from app.editor.actions.tracking.track_dragging import (
     rotate_track_handle,
 )
 from app.editor.actions.tracking.track_space import track_target_angle
+from app.editor.overlay_shapes import (
+    CircleShape,
+    ColourRole,
+    KnobShape,
+    LineShape,
+    OverlayShape,
+    TagShape,
+)
 from app.editor.project import Project
-from app.editor.session import Hint, Mark, NumericEntryOverlay, RotationOverlay, Session
+from app.editor.session import Hint, Session
 from app.editor.tools.numeric_entry import NumericEntry
-from app.editor.tools.tool import PointerHit, Tool
+from app.editor.tools.tool import PointerHit, Tool, handle_places
 from app.editor.work.drag_session import DragStart
 from app.texts import _
 
 STEP = math.radians(15.0)  # step of a rotation that snaps
+RING, BAND, KNOB = 2.2, 0.5, 0.3  # em: radius of the ring, half its hit area, radius of its knob
 LEAST_ARM = 12.0  # screen pixels around a handle; a press within has no direction
 
 
@@ -34,6 +43,8 @@ LEAST_ARM = 12.0  # screen pixels around a handle; a press within has no directi
 class RotateTool(Tool):
     """The pointer rotates the shape around a handle."""
 
+    cursor = "hand"
+    snaps = True
     handle: int
     centre: complex  # place of the handle
     start: complex  # place of the press
@@ -136,19 +147,59 @@ class RotateTool(Tool):
         cancel_track_drag(self.project, self)
         super(RotateTool, self).cancel(session)
 
-    @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        """The rotation and the typed text."""
-        sweep = RotationOverlay(
-            handle=self.handle, angle=self.turn + self.swept, swept_angle=self.swept
-        )
-        if not self.entry.text:
-            return (sweep,)
-        return (
-            sweep,
-            NumericEntryOverlay(place=self.centre, direction=None, text=self.entry.describe("°")),
-        )
+    @classmethod
+    def idle_shapes(
+        cls, session: Session, project: Project, spot: PointerHit
+    ) -> Iterable[OverlayShape]:
+        """Return the ring around the only selected handle, with a knob at the shape's top."""
+        found = find_ring(session, project) if session.active_tool is None else None
+        return () if found is None else _ring(*found, spot.em, is_hot=spot.on_ring)
+
+    def shapes(self, _place: complex, em: float) -> Iterable[OverlayShape]:
+        """Return the dragged ring with its angle, and the typed text."""
+        centre = handle_places(self.project).get(self.handle, self.centre)
+        turn = self.turn + self.swept
+        degrees = round(math.degrees(self.swept))
+        text = f"{degrees:+d}°".replace("-", "−") if degrees else "0°"
+        top = centre + RING * em * cmath.exp(1j * turn) * 1j
+        return [
+            *_ring(centre, turn, em, is_hot=True),
+            LineShape(points=[centre, top]),
+            TagShape(text=text, place=centre + (RING + 0.8) * em * 1j),
+            *self.entry.shapes(centre, "°"),
+        ]
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
         return (Hint(_("turn in steps of 15°"), "ctrl"), Hint(_("type a number of degrees")))
+
+
+def is_on_ring(session: Session, project: Project, place: complex, em: float) -> bool:
+    """Return whether a place is on the ring around the selected handle."""
+    found = find_ring(session, project)
+    return found is not None and abs(abs(place - found[0]) - RING * em) < BAND * em
+
+
+def find_ring(session: Session, project: Project) -> tuple[complex, float] | None:
+    """Return the place and the rotation of the only selected handle, if it can be rotated."""
+    shown, selected = project.layer_runtime.shown, project.selected_handles
+    is_idle = session.is_posing and not session.records and project.playhead.since is None
+    if shown is None or len(selected) != 1 or not (is_idle and session.overlays.handles):
+        return None
+    (handle,) = selected
+    identities = [each.id for each in shown.clip.layer.handles]
+    if handle not in identities or project.layer.is_locked(handle):
+        return None
+    index = identities.index(handle)
+    return complex(shown.handle_positions[index]), float(shown.handle_rotations[index])
+
+
+def _ring(centre: complex, turn: float, em: float, *, is_hot: bool) -> list[OverlayShape]:
+    """Return the ring around a handle, with a knob at the shape's top."""
+    role: ColourRole = "accent" if is_hot else "text"
+    top = centre + RING * em * cmath.exp(1j * turn) * 1j
+    opacity = 1.0 if is_hot else 0.55
+    return [
+        CircleShape(centre=centre, radius=RING * em, role=role, opacity=opacity),
+        KnobShape(centre=top, radius=KNOB * em, role=role),
+    ]

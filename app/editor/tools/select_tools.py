@@ -1,12 +1,14 @@
 """Tools that select handles by a click or a box, and layers by a click."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Self
 
 from app.editor.actions import editing
 from app.editor.layering.layer_selection import set_active_layer
+from app.editor.overlay_shapes import AreaShape, LineShape, OverlayShape
 from app.editor.project import Project
-from app.editor.session import BoxOverlay, Hint, Mark, Session
+from app.editor.session import Hint, Session
 from app.editor.tools.tool import PointerHit, Tool
 from app.motion import BoundingBox
 from app.texts import _
@@ -63,9 +65,15 @@ class SelectTool(Tool):
             session, project.selected_handles | inside if self.adds else frozenset(inside)
         )
 
-    @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        return (BoxOverlay(corner=self.start, opposite=self.place),) if self.has_box else ()
+    def shapes(self, _place: complex, _em: float) -> Iterable[OverlayShape]:
+        if not self.has_box:
+            return ()
+        low, high = self.start, self.place
+        corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag)]
+        return (
+            AreaShape(points=corners, opacity=0.12),
+            LineShape(points=corners, opacity=0.8, closed=True, width=0.07),
+        )
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

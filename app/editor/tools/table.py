@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.tools.anchor_tool import AnchorTool
 from app.editor.tools.attach_tool import AttachTool
@@ -13,7 +14,7 @@ from app.editor.tools.move_tool import MoveTool
 from app.editor.tools.pose_tool import PoseTool
 from app.editor.tools.rotate_tool import RotateTool
 from app.editor.tools.select_tools import PickLayerTool, SelectTool
-from app.editor.tools.tool import Tool
+from app.editor.tools.tool import PointerHit, Tool
 
 CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (CutBrushTool, KnifeTool, CutClickTool)
 STIFFNESS_TOOLS: Final[tuple[type[Tool], ...]] = (StiffnessBrushTool, BoneTool)
@@ -30,6 +31,14 @@ TOOLS: Final[tuple[type[Tool], ...]] = (
     AnchorTool,
     SelectTool,
 )
+
+
+def pointed_tool(session: Session, project: Project, spot: PointerHit) -> type[Tool] | None:
+    """Return the tool that gets a press at a place while no key is held, by its hints."""
+    for tool in tools_of(session):
+        if any(not hint.key for hint in tool.hints(session, project, spot)):
+            return tool
+    return None
 
 
 def tools_of(session: Session) -> tuple[type[Tool], ...]:

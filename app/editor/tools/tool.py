@@ -1,15 +1,19 @@
 """The base class of tools: a tool takes a press, and then gets all events until the release."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from app.document import KeysByChannel
 from app.editor.actions import editing
+from app.editor.overlay_shapes import Cursor, OverlayShape
 from app.editor.project import Project
-from app.editor.session import CLICK, Hint, Mark, Session
+from app.editor.session import CLICK, Hint, Session
+from app.motion import DisplayedFrame
+from engine.arrays import Complexes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +33,8 @@ class PointerHit:
     ctrl: bool = False  # whether the modifier keys are held
     shift: bool = False
     alt: bool = False
+    is_over: bool = True  # whether the pointer is over the drawing, and not elsewhere in the window
+    em: float = 1.0  # the size of the window's text, in pixels of the picture
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +52,25 @@ class Tool(ABC):
     `before` is the selection at the press.
     """
 
+    cursor: ClassVar[Cursor] = "arrow"
+    snaps: ClassVar[bool] = False  # whether it moves in steps while Ctrl is held
     project: Project
     before: SelectionSnapshot = field(init=False)
 
     def __post_init__(self) -> None:
         self.before = SelectionSnapshot(self.project.selected_handles, self.project.selected_keys)
+
+    @classmethod
+    def mode(cls, _session: Session, _project: Project) -> str:
+        """Return what the tool's mode does, for its badge; empty if the tool has no mode."""
+        return ""
+
+    @classmethod
+    def idle_shapes(
+        cls, _session: Session, _project: Project, _spot: PointerHit
+    ) -> Iterable[OverlayShape]:
+        """Return what is always drawn over the drawing while the tool can be used."""
+        return ()
 
     @classmethod
     @abstractmethod
@@ -79,9 +99,8 @@ class Tool(ABC):
         )
         editing.revert_gesture(session, self)
 
-    @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        """The tool's overlays over the drawing."""
+    def shapes(self, _place: complex, _em: float) -> Iterable[OverlayShape]:
+        """Return what is drawn over the drawing until the release, with the pointer at a place."""
         return ()
 
     @property
@@ -98,3 +117,19 @@ def to_scene(project: Project, place: complex) -> complex:
     """Convert a place of the active layer's own space to the scene."""
     shown = project.layer_runtime.shown
     return place if shown is None else complex(shown.placement.apply(np.array([place]))[0])
+
+
+def scene_outlines(shown: DisplayedFrame) -> list[Complexes]:
+    """Return the deformed outline and holes of a layer, in scene coordinates."""
+    # The vertices of a mesh begin with those of the loops.
+    ends = np.cumsum([len(loop) for loop in shown.mesh.domain.loops])
+    return np.split(shown.placement.apply(shown.positions[: ends[-1]]), ends[:-1])
+
+
+def handle_places(project: Project) -> dict[int, complex]:
+    """Return the shown places of the active layer's handles, by id."""
+    shown = project.layer_runtime.shown
+    if shown is None:
+        return {}
+    places = shown.handle_positions.tolist()
+    return {each.id: at for each, at in zip(shown.clip.layer.handles, places, strict=True)}

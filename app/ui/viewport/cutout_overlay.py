@@ -7,16 +7,13 @@ colour they would be invisible.
 import math
 
 import numpy as np
-from imgui_bundle import ImVec2, ImVec4, imgui
 
-from app.editor import Project, Session
-from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
+from app.editor import Project
 from app.render import Disc, Renderer
 from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, to_float32_points
 from app.render.gpu.picture import GpuPicture
 from app.storage import CutOutResult
-from app.ui.style.drawing import outline_strokes
-from app.ui.style.theme import Look, Palette, colour_u32
+from app.ui.style.theme import Palette
 from app.ui.viewport.marks import to_rgba
 from engine.arrays import Bytes, Complexes, Integers
 
@@ -96,37 +93,6 @@ def mark_holes(project: Project, palette: Palette, scale: float) -> tuple[Disc, 
         )
         for number, middle in holes.middles.items()
     )
-
-
-def draw_brush_ring(session: Session, look: Look, at: ImVec2, scale: float) -> None:
-    """Draw the ring of the brush. A pixel of the picture takes `scale` pixels of the screen."""
-    keeps: bool | None
-    if session.project is None:
-        return
-    if session.cutting in {"keep", "remove"}:
-        keeps = (session.cutting == "keep") != imgui.get_io().key_alt
-    elif session.material in stiffness_editing.BRUSHES:
-        keeps = stiffness_editing.BRUSHES[session.material]
-    else:
-        return
-    radius = cut_out_editing.brush_radius(session.project) * scale
-    draw_list = imgui.get_window_draw_list()
-    colour = colour_u32(find_stroke_colour(look, keeps=keeps))
-    for tone, width in outline_strokes(look, colour, 0.1):
-        draw_list.add_circle(at, radius, tone, 64, width)
-    if keeps is None:
-        return
-    sign, width = 0.35 * look.em, 0.12 * look.em
-    draw_list.add_line(ImVec2(at.x - sign, at.y), ImVec2(at.x + sign, at.y), colour, width)
-    if keeps:
-        draw_list.add_line(ImVec2(at.x, at.y - sign), ImVec2(at.x, at.y + sign), colour, width)
-
-
-def find_stroke_colour(look: Look, *, keeps: bool | None) -> ImVec4:
-    """Return the stroke colour; `keeps` is True also to stiffen, and None for neither."""
-    if keeps is None:
-        return look.palette.accent
-    return look.palette.good if keeps else look.palette.danger
 
 
 def _corners(width: float, height: float) -> Complexes:

@@ -7,11 +7,12 @@ from imgui_bundle import ImVec4
 
 from app.document import Clip, Track, misses_target, pinned_handles, segment_time_at, track_at
 from app.editor import Project, Session
+from app.editor.tools.tool import scene_outlines
 from app.motion import BoundingBox, DeformMesh, DisplayedFrame, MeshPoints, MotionPaths
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
 from app.ui.style.theme import Palette, interface_scale, pixel_density
 from app.ui.viewport.paths import mark_path
-from engine.arrays import Booleans, Complexes
+from engine.arrays import Booleans
 from engine.domain import MeshedDomain
 from engine.geometry import deepest_point
 
@@ -197,13 +198,6 @@ def _on(shown: DisplayedFrame, place: complex) -> complex:
     return complex(shown.placement.apply(np.array([place]))[0])
 
 
-def transform_loops(shown: DisplayedFrame) -> list[Complexes]:
-    """Return the deformed outline and holes, in the layer's coordinates."""
-    # The vertices of a mesh begin with those of the loops.
-    ends = np.cumsum([len(loop) for loop in shown.mesh.domain.loops])
-    return np.split(shown.positions[: ends[-1]], ends[:-1])
-
-
 def _frames_of_paths(session: Session, project: Project, paths: MotionPaths) -> Booleans:
     """Return which frames paths cover: the played ones, or some around the playhead."""
     played, reach = project.document.played_frames, session.settings.preferences.path_reach
@@ -250,12 +244,12 @@ def _paths(
 def _outlines(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
     return [
         Line(
-            points=shown.placement.apply(points),
+            points=points,
             colour=to_rgba(palette.accent),
             width=1.5 * scale,
             closed=True,
         )
-        for points in transform_loops(shown)
+        for points in scene_outlines(shown)
     ]
 
 

@@ -5,10 +5,10 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Project, Session
 from app.editor.layering.layer_list import layer_at
-from app.editor.tools.tool import PointerHit
+from app.editor.tools.tool import PointerHit, scene_outlines
 from app.motion import DisplayedFrame
 from app.ui.style.theme import Look, pixel_density
-from app.ui.viewport.marks import find_anchor, transform_loops
+from app.ui.viewport.marks import find_anchor
 from engine.arrays import Complexes
 from engine.geometry import contains
 
@@ -62,23 +62,21 @@ class ScreenMapping:
         pixels = self.view.to_pixels(in_scene) / self.density + self._corner
         return [ImVec2(pixel.real, pixel.imag) for pixel in pixels.tolist()]
 
-    def hit_test(
-        self, look: Look, handle: int | None, *, on_ring: bool, on_axis: bool
-    ) -> PointerHit:
+    def hit_test(self, look: Look, handle: int | None, *, on_axis: bool) -> PointerHit:
         """Return the pointer's place and what is under it. The given items take precedence."""
         io, place = imgui.get_io(), self.pointer
-        outline, *holes = transform_loops(self.shown)
+        outline, *holes = scene_outlines(self.shown)
         return PointerHit(
             place=place,
             handle=handle,
             on_axis=on_axis,
             on_anchor=self._is_anchor(handle, place, GRIP * look.em / self.scale),
-            on_ring=on_ring,
-            on_shape=bool(contains(outline, np.array([place]), holes=holes)[0]),
+            on_shape=bool(contains(outline, np.array([self._in_scene]), holes=holes)[0]),
             layer=self._layer(through=io.key_alt),
             ctrl=io.key_ctrl,
             shift=io.key_shift,
             alt=io.key_alt,
+            em=look.em / self.scale,
         )
 
     def _layer(self, *, through: bool) -> int | None:

@@ -20,6 +20,9 @@ from app.editor.actions.timing import keys, tracks
 from app.editor.layering.layer_selection import reset_tree_rows
 from app.editor.poses import copying, pasting
 from app.editor.tools import move_tool, tool_pointer
+from app.editor.tools.edit_tools.stiffness_tools import layer_bones
+from app.editor.tools.rotate_tool import is_on_ring
+from app.editor.tools.table import pointed_tool, tools_of
 from app.editor.tools.tool import PointerHit
 from app.texts import _
 from app.ui.panel import is_in_front
@@ -28,17 +31,14 @@ from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.style.theme import Look, pixel_density
 from app.ui.style.widgets import is_hovered_or_held, is_pressed
 from app.ui.viewport.backdrop import draw_camera_frame
-from app.ui.viewport.cutout_overlay import draw_brush_ring
-from app.ui.viewport.interaction.drag import draw_cuts, draw_pending_strokes, follow_pointer
+from app.ui.viewport.interaction.drag import follow_pointer
 from app.ui.viewport.interaction.gizmos import (
     add_mirror_axis_gizmo,
     draw_mirror_axis,
-    draw_rotation_gizmo,
-    find_rotation_gizmo,
 )
-from app.ui.viewport.interaction.hints import draw_badges, draw_mode_badge, find_hint
-from app.ui.viewport.interaction.joints import draw_joints
+from app.ui.viewport.interaction.hints import draw_badges, find_hint
 from app.ui.viewport.interaction.recording import add_track_key_gizmos, draw_recording_bar
+from app.ui.viewport.interaction.shapes import draw_shapes
 from app.ui.viewport.marks import find_off_target
 from app.ui.viewport.screen import GRIP, ScreenMapping
 from app.ui.viewport.split_view import (
@@ -47,7 +47,6 @@ from app.ui.viewport.split_view import (
     draw_divider,
     draw_split_pictures,
 )
-from app.ui.viewport.stiffness_overlay import draw_bones
 
 ZOOM_STEP = 1.15  # per notch of the wheel
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
@@ -60,6 +59,11 @@ CANVAS = (
     (viewing.zoom_to_pose, viewing.zoom_to_motion, viewing.zoom_to_actual_size),
     (viewing.HANDLES, viewing.OUTLINE, viewing.ONION_SKIN),
 )
+CURSORS = {
+    "hand": imgui.MouseCursor_.hand,
+    "move": imgui.MouseCursor_.resize_all,
+    "resize": imgui.MouseCursor_.resize_ew,
+}
 DEPTHS = {_("In front"): 1.0, _("Normal order"): 0.0, _("Behind"): -1.0}
 
 
@@ -101,39 +105,34 @@ def draw_viewport_panel(
     actions += draw_divider(session, look, parts, whole.x)
     imgui.set_cursor_screen_pos(corner)
     imgui.invisible_button("canvas", parts.room, ANY_BUTTON)
-    on_canvas, ring = imgui.is_item_hovered(), find_rotation_gizmo(session, screen)
-    on_ring = on_canvas and handles.hovered is None and ring is not None and ring.is_pointed(look)
-    spot = screen.hit_test(look, handles.hovered, on_ring=on_ring, on_axis=axis.is_hot)
-    spot = replace(spot, at_target=handles.at_target, track_key=track_key)
+    on_canvas = imgui.is_item_hovered()
+    is_over = on_canvas or axis.is_hot or not handles.hovered is track_key is None
+    spot = screen.hit_test(look, handles.hovered, on_axis=axis.is_hot)
+    on_ring = on_canvas and handles.hovered is None
+    on_ring = on_ring and is_on_ring(session, project, spot.place, spot.em)
+    spot = replace(
+        spot, at_target=handles.at_target, track_key=track_key, on_ring=on_ring, is_over=is_over
+    )
     if handles.is_pressed or is_key_pressed or axis.is_pressed or _is_canvas_pressed():
         actions.append(do(tool_pointer.press_pointer, spot))
     actions += _canvas_menu(session, is_pointed=on_canvas and handles.hovered is None)
     actions += _navigate(screen)
     actions += handles.actions
     actions += follow_pointer(session, look, screen)
-    is_over = on_canvas or axis.is_hot or not handles.hovered is track_key is None
-    if session.moves and is_over and session.cutting is None:
-        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+    tool = session.active_tool or pointed_tool(session, project, spot)
+    if tool is not None and tool.cursor in CURSORS and (is_over or session.active_tool):
+        imgui.set_mouse_cursor(CURSORS[tool.cursor])
     if handles.hovered != session.hovered:
         actions.append(do(tool_pointer.hover_handle, handles.hovered))
     draw_mirror_axis(look, axis)
-    if ring is not None:
-        draw_rotation_gizmo(look, ring, is_pointed=on_ring and session.active_tool is None)
     actions += _update_hint(session, screen, spot, is_over=is_over)
     if session.tint == "stiffness" and not is_in_front("Material"):
         actions.append(do(viewing.set_tint, None))
     if _shows_handles(session, project):
-        draw_bones(look, screen)
-    draw_joints(session, look, screen)
-    if session.material is not None and (on_canvas or session.active_tool is not None):
-        draw_brush_ring(session, look, imgui.get_mouse_pos(), screen.scale)
-    if session.cutting is None:
-        return actions + draw_badges(session, look, project, corner, parts.room)
-    draw_pending_strokes(look, screen)
-    draw_cuts(look, screen)
-    if on_canvas or session.active_tool is not None:
-        draw_brush_ring(session, look, imgui.get_mouse_pos(), screen.scale)
-    return actions + draw_mode_badge(look, _("Cutting out"), corner, parts.room)
+        draw_shapes(look, screen, layer_bones(project, spot.em))
+    for offered in tools_of(session):
+        draw_shapes(look, screen, offered.idle_shapes(session, project, spot))
+    return actions + draw_badges(session, look, project, corner, parts.room)
 
 
 def _fit(session: Session, room: ImVec2) -> list[Action]:

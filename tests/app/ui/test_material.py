@@ -12,7 +12,7 @@ from app.editor.actions.layer_setup import stiffness_editing
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import release_drag, set_targets
 from app.editor.tools import move_tool
-from app.ui.viewport.interaction.drag import triangulate_stroke
+from app.ui.viewport.interaction.shapes import triangulate_stroke
 from app.ui.viewport.stiffness_overlay import measure_vertex_stiffness
 
 ENDS = (0, 1)

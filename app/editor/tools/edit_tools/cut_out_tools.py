@@ -1,5 +1,6 @@
 """Cut-out tools: a round brush, a knife, a pipette, and clicks on holes."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -7,10 +8,13 @@ import numpy as np
 
 from app.cut_out import CutLine, Stroke
 from app.editor.actions.layer_setup import cut_out_editing
+from app.editor.overlay_shapes import CircleShape, ColourRole, LineShape, OverlayShape, StrokeShape
 from app.editor.project import Project
-from app.editor.session import Hint, KnifeOverlay, Mark, Session, StrokeOverlay
+from app.editor.session import Hint, Session
 from app.editor.tools.tool import PointerHit, Tool
 from app.texts import _
+from engine.domain import CUT_WIDTH
+from engine.geometry import box_diagonal
 
 STEP = 0.12  # of the brush's radius: least distance of a stroke's points
 REACH = 8.0  # screen pixels: a click within this distance of a line is on the line
@@ -59,9 +63,25 @@ class CutBrushTool(Tool):
             session, Stroke(points=points, radius=self.radius, keeps=self.keeps)
         )
 
-    @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        return (StrokeOverlay(points=tuple(self.places), radius=self.radius, keeps=self.keeps),)
+    @classmethod
+    def mode(cls, _session: Session, _project: Project) -> str:
+        return _("Cutting out")
+
+    @classmethod
+    def idle_shapes(
+        cls, session: Session, project: Project, spot: PointerHit
+    ) -> Iterable[OverlayShape]:
+        """Yield the strokes that the worker has not processed yet, and the ring of the brush."""
+        layer, known = project.layer, project.layer_runtime.cut.source
+        for stroke in layer.cut_out.strokes[0 if known is None else len(known.strokes) :]:
+            points = (stroke.points + layer.corner).tolist()
+            yield StrokeShape(points=points, radius=stroke.radius, role=brush_role(stroke.keeps))
+        if session.cutting in {"keep", "remove"} and is_brush_shown(session, spot):
+            keeps = (session.cutting == "keep") != spot.alt
+            yield from brush_ring(spot.place, cut_out_editing.brush_radius(project), keeps, spot.em)
+
+    def shapes(self, place: complex, em: float) -> Iterable[OverlayShape]:
+        return brush_stroke(self.places, place, self.radius, self.keeps, em)
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -105,9 +125,16 @@ class KnifeTool(Tool):
             session, CutLine(points=np.array(self.places) - self.project.layer.corner)
         )
 
-    @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        return (KnifeOverlay(points=tuple(self.places)),) if self.parts else ()
+    @classmethod
+    def idle_shapes(
+        cls, _session: Session, project: Project, _spot: PointerHit
+    ) -> Iterable[OverlayShape]:
+        """Yield the finished cuts."""
+        for slit in project.layer.cut_out.cut_lines:
+            yield _cut(project, (slit.points + project.layer.corner).tolist())
+
+    def shapes(self, _place: complex, _em: float) -> Iterable[OverlayShape]:
+        return (_cut(self.project, tuple(self.places)),) if self.parts else ()
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -135,3 +162,46 @@ class CutClickTool(Tool):
             else cut_out_editing.toggle_hole
         )
         act(session, place)
+
+
+def _cut(project: Project, points: Sequence[complex]) -> LineShape:
+    """Return a cut line, as wide as the slit it makes."""
+    breadth = CUT_WIDTH * box_diagonal(project.layer.domain.outline)
+    return LineShape(points=points, width=0.1, breadth=breadth)
+
+
+def is_brush_shown(session: Session, spot: PointerHit) -> bool:
+    """Return whether a brush shows its ring before a press."""
+    return spot.is_over and session.active_tool is None
+
+
+def brush_role(keeps: bool | None) -> ColourRole:  # noqa: FBT001 - the only argument
+    """Return the colour of a stroke that keeps or stiffens, removes or softens, or neither."""
+    return "accent" if keeps is None else "good" if keeps else "danger"
+
+
+def brush_stroke(
+    points: Sequence[complex],
+    place: complex,
+    radius: float,
+    keeps: bool | None,  # noqa: FBT001 - one of three
+    em: float,
+) -> Iterable[OverlayShape]:
+    """Yield an unfinished stroke, and the ring of the brush at the pointer."""
+    yield StrokeShape(points=tuple(points), radius=radius, role=brush_role(keeps))
+    yield from brush_ring(place, radius, keeps, em)
+
+
+def brush_ring(
+    place: complex,
+    radius: float,
+    keeps: bool | None,  # noqa: FBT001 - one of three
+    em: float,
+) -> Iterable[OverlayShape]:
+    """Yield the ring of a brush, with a plus if it keeps and a minus if it removes."""
+    role, sign = brush_role(keeps), 0.35 * em
+    yield CircleShape(centre=place, radius=radius, role=role, width=0.1)
+    if keeps is not None:
+        yield LineShape(points=[place - sign, place + sign], role=role, width=0.12)
+    if keeps:
+        yield LineShape(points=[place - 1j * sign, place + 1j * sign], role=role, width=0.12)

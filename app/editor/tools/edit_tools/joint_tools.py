@@ -1,9 +1,18 @@
 """Joint tool: a drag places a joint of a motion, and a click leaves it out."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Self
 
 from app.editor.actions.posing.motion_presets import joint_placement
+from app.editor.overlay_shapes import (
+    CircleShape,
+    ColourRole,
+    KnobShape,
+    LineShape,
+    OverlayShape,
+    TagShape,
+)
 from app.editor.project import Project
 from app.editor.session import Hint, Session
 from app.editor.tools.tool import PointerHit, Tool
@@ -11,6 +20,7 @@ from app.editor.work.motion_setup import MotionSetup
 from app.texts import _
 
 REACH = 14.0  # screen pixels: reach of the pointer around a joint
+DOT = 0.42  # em: radius of a joint
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -21,6 +31,33 @@ class JointTool(Tool):
     start: complex
     draft: MotionSetup  # the draft before the drag
     is_drag: bool = False
+
+    @classmethod
+    def mode(cls, _session: Session, _project: Project) -> str:
+        return _("Setting joints")
+
+    @classmethod
+    def idle_shapes(
+        cls, session: Session, project: Project, spot: PointerHit
+    ) -> Iterable[OverlayShape]:
+        """Yield joints and bones, each side in its own colour, and the pointed joint's name."""
+        draft = project.motion_setup
+        if draft is None or project.playhead.since is not None:
+            return
+        places = joint_placement.shown_joint_places(project)
+        for name, place in places.items():
+            before = draft.body_kind.parent(name, places)
+            if before:
+                yield LineShape(points=[places[before], place], role=joint_role(name))
+        for name, place in places.items():
+            yield KnobShape(centre=place, radius=DOT * spot.em, role=joint_role(name))
+        near = find_joint_near(session, project, spot.place)
+        hot = near if session.active_tool is None else draft.selected_joint
+        for name, place in places.items():
+            if name in {draft.selected_joint, hot}:
+                yield CircleShape(centre=place, radius=1.7 * DOT * spot.em, role="text", width=0.1)
+            if name == hot:
+                yield TagShape(text=name, place=place + 1.2j * spot.em)
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
@@ -62,6 +99,11 @@ class JointTool(Tool):
     @property
     def active_hints(self) -> tuple[Hint, ...]:
         return (Hint(_("let go at its place")),)
+
+
+def joint_role(name: str) -> ColourRole:
+    """Return the colour of a joint, which depends on its side."""
+    return "good" if name.endswith(".L") else "warning" if name.endswith(".R") else "accent"
 
 
 def find_joint_near(session: Session, project: Project, place: complex) -> str | None:

@@ -1,16 +1,31 @@
 """Stiffness tools: a brush that makes parts stiff or soft, and bones between handles."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Self
 
 from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
+from app.editor.overlay_shapes import AreaShape, ColourRole, LineShape, OverlayShape
 from app.editor.project import Project
-from app.editor.session import BoneOverlay, Hint, Mark, Session, StrokeOverlay
-from app.editor.tools.tool import PointerHit, Tool
+from app.editor.session import Hint, Session
+from app.editor.tools.edit_tools.cut_out_tools import (
+    brush_ring,
+    brush_stroke,
+    is_brush_shown,
+)
+from app.editor.tools.tool import PointerHit, Tool, handle_places
 from app.texts import _
 
 STEP = 0.25  # of the brush's radius: least distance of a stroke's points
 REACH = 14.0  # screen pixels: reach of the pointer around a handle
+WIDEST, AT = 0.09, 0.2  # of a bone's length: half its width, and where it is widest
+MOST = 0.7  # em: half a bone's width at most
+MODES = {
+    "stiff": _("Making parts stiff"),
+    "soft": _("Making parts soft"),
+    "normal": _("Making parts normal again"),
+    "bone": _("Drawing bones from handle to handle"),
+}
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -20,6 +35,10 @@ class StiffnessBrushTool(Tool):
     places: list[complex]
     radius: float
     stiffens: bool | None
+
+    @classmethod
+    def mode(cls, session: Session, _project: Project) -> str:
+        return MODES.get(session.material or "", "")
 
     @classmethod
     def hints(cls, session: Session, _project: Project, _spot: PointerHit) -> tuple[Hint, ...]:
@@ -51,10 +70,18 @@ class StiffnessBrushTool(Tool):
             self.places.append(place)
         stiffness_editing.paint_stiffness(session, self.places)
 
-    @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        points = tuple(self.places)
-        return (StrokeOverlay(points=points, radius=self.radius, keeps=self.stiffens),)
+    @classmethod
+    def idle_shapes(
+        cls, session: Session, project: Project, spot: PointerHit
+    ) -> Iterable[OverlayShape]:
+        """Return the ring of the brush."""
+        if session.material not in stiffness_editing.BRUSHES or not is_brush_shown(session, spot):
+            return ()
+        stiffens = stiffness_editing.BRUSHES[session.material]
+        return brush_ring(spot.place, cut_out_editing.brush_radius(project), stiffens, spot.em)
+
+    def shapes(self, place: complex, em: float) -> Iterable[OverlayShape]:
+        return brush_stroke(self.places, place, self.radius, self.stiffens, em)
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -96,30 +123,41 @@ class BoneTool(Tool):
         if self.other is not None:
             stiffness_editing.add_bone(session, (self.handle, self.other))
 
-    @property
-    def tool_overlays(self) -> tuple[Mark, ...]:
-        places = self._places()
+    def shapes(self, _place: complex, em: float) -> Iterable[OverlayShape]:
+        places = handle_places(self.project)
         end = self.place if self.other is None else places.get(self.other, self.place)
-        return (
-            BoneOverlay(
-                start=places.get(self.handle, self.place),
-                end=end,
-                is_refused=self.other is not None and bool(self.refusal),
-            ),
-        )
-
-    def _places(self) -> dict[int, complex]:
-        """Return the places of the handles, by id."""
-        shown = self.project.layer_runtime.shown
-        if shown is None:
-            return {}
-        handles = shown.clip.layer.handles
-        places = shown.handle_positions.tolist()
-        return {handle.id: place for handle, place in zip(handles, places, strict=True)}
+        is_refused = self.other is not None and self.refusal is not None
+        start = places.get(self.handle, self.place)
+        return bone_shapes(start, end, "danger" if is_refused else "accent", em)
 
     def _near(self, session: Session, place: complex) -> int | None:
         """Return the other handle nearest to a place, within reach."""
         reach = REACH / self.project.view(session.screen).scale
-        away = {i: abs(at - place) for i, at in self._places().items() if i != self.handle}
+        away = {
+            i: abs(at - place) for i, at in handle_places(self.project).items() if i != self.handle
+        }
         nearest = min(away, key=lambda i: away[i], default=None)
         return nearest if nearest is not None and away[nearest] <= reach else None
+
+
+def layer_bones(project: Project, em: float) -> Iterable[OverlayShape]:
+    """Yield the visible bones of the active layer, as thin diamonds from handle to handle."""
+    places = handle_places(project)
+    for bone in project.layer.bones:
+        if bone.is_shown and places.keys() >= set(bone.ends):
+            start, end = (places[handle] for handle in bone.ends)
+            yield from bone_shapes(start, end, "text", em)
+
+
+def bone_shapes(
+    start: complex, end: complex, role: ColourRole, em: float
+) -> Iterable[OverlayShape]:
+    way = end - start
+    if not way:
+        return ()
+    aside = 1j * way / abs(way) * min(WIDEST * abs(way), MOST * em)
+    diamond = [start, start + AT * way + aside, end, start + AT * way - aside]
+    return (
+        AreaShape(points=diamond, role=role, opacity=0.3),
+        LineShape(points=diamond, role=role, closed=True, width=0.08),
+    )

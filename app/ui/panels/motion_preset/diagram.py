@@ -7,13 +7,14 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, do
 from app.editor.actions.posing.motion_presets import joint_placement
+from app.editor.tools.edit_tools.joint_tools import joint_role
 from app.editor.work.motion_setup import MotionSetup
 from app.rigging import BodyKind
 from app.texts import _
 from app.ui.style.drawing import draw_knob
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import draw_tooltip, is_pressed
-from app.ui.viewport.interaction.joints import joint_colour
+from app.ui.viewport.interaction.shapes import role_colour
 
 DOT, LIMB, THIN = 0.34, 0.14, 0.09  # em: dot and line of the large diagram, line of the buttons
 MARGIN = 0.6  # em
@@ -113,7 +114,7 @@ def draw_joint_diagram(look: Look, draft: MotionSetup, size: ImVec2) -> list[Act
         before = kind.parent(name, points)
         if before:
             is_there = name in draft.joints
-            tone = joint_colour(look, name) if is_there else look.palette.line
+            tone = role_colour(look, joint_role(name)) if is_there else look.palette.line
             draw_list.add_line(points[before], point, colour_u32(tone), LIMB * look.em)
     grip = ImVec2(1.3 * look.em, 1.3 * look.em)
     for name, point in points.items():
@@ -131,7 +132,7 @@ def draw_joint_diagram(look: Look, draft: MotionSetup, size: ImVec2) -> list[Act
         text = _("{name}: click to leave it out") if is_there else _("{name}: click to add it")
         draw_tooltip(text.format(name=name))
         radius = DOT * (1.25 if is_hot or name == draft.selected_joint else 1.0)
-        colour = joint_colour(look, name)
+        colour = role_colour(look, joint_role(name))
         if is_there:
             draw_knob(look, point, radius, colour)
         else:

@@ -52,14 +52,6 @@ def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
     return _sentence(hints)
 
 
-MODES = {
-    "stiff": _("Making parts stiff"),
-    "soft": _("Making parts soft"),
-    "normal": _("Making parts normal again"),
-    "bone": _("Drawing bones from handle to handle"),
-}
-
-
 def _sentence(parts: list[str]) -> str:
     text = ", ".join(parts)
     return text[:1].upper() + text[1:]
@@ -75,11 +67,13 @@ def draw_badges(
 ) -> list[Action]:
     """Draw special states: a pose without a key, the active tool, or the next step."""
     top = corner + ImVec2(room.x / 2, look.em)
-    if project.unkeyed_pose is not None:
+    if project.unkeyed_pose is not None and session.cutting is None:
         return _draw_pill(look, _("Unkeyed pose"), top, keys.insert_key_in_row)
-    mode = _mode(session, project)
+    mode = next(filter(None, (tool.mode(session, project) for tool in tools_of(session))), "")
     if mode:
-        return draw_mode_badge(look, mode, corner, room)
+        end = shown_keys(move_tool.return_to_posing)
+        text = _("{mode}: {keys} goes back to posing").format(mode=mode, keys=end)
+        return _draw_pill(look, text, top)
     if project.motion_job is not None:
         text = _("{step}: {keys} cancels the motion preset").format(
             step=project.motion_job.step_label, keys=shown_keys(apply_motion.cancel_motion_job)
@@ -89,25 +83,6 @@ def draw_badges(
     if step is None or tutorials.is_tutorial_shown(session):
         return []
     return _draw_pill(look, HINTS[step], corner + ImVec2(room.x / 2, room.y - 3.2 * look.em))
-
-
-def _mode(session: Session, project: Project) -> str:
-    """Return a text about the active tool; empty if drags pose the layer."""
-    if session.moves:
-        return _("Moving the whole layer")
-    if session.material is not None:
-        return MODES[session.material]
-    if project.motion_setup is not None:
-        return _("Setting joints")
-    return _("Recording the next drag of a handle") if session.records else ""
-
-
-def draw_mode_badge(look: Look, mode: str, corner: ImVec2, room: ImVec2) -> list[Action]:
-    """Draw the badge of the active tool, with the button that ends it."""
-    keys = shown_keys(move_tool.return_to_posing)
-    place = corner + ImVec2(room.x / 2, look.em)
-    text = _("{mode}: {keys} goes back to posing").format(mode=mode, keys=keys)
-    return _draw_pill(look, text, place)
 
 
 def find_first_step(project: Project) -> int | None:

@@ -9,9 +9,9 @@ from animations import round_document
 from sessions import run_update_steps, session_of, settle
 
 from app.document.commands import handle_commands, scene_commands
-from app.editor import BoxOverlay, RotationOverlay
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import remove_handles
+from app.editor.overlay_shapes import TagShape
 from app.editor.tools import tool_pointer
 from app.editor.tools.table import TOOLS
 from app.editor.tools.tool import PointerHit
@@ -159,10 +159,8 @@ def test_selected_handles_are_pulled_together(session):
 def test_a_turn_begins_where_the_pointer_leaves_the_handle(session):
     end = RIGHT + 15j * np.exp(0.2j)
     drag(session, replace(AT_RIGHT, alt=True), RIGHT + 15j, end)
-    (mark,) = session.active_tool.tool_overlays
-    assert mark == RotationOverlay(
-        handle=1, angle=pytest.approx(0.2), swept_angle=pytest.approx(0.2)
-    )
+    assert session.active_tool.swept == pytest.approx(0.2)
+    assert tags(session) == ["+11°"]
     tool_pointer.release_pointer(session, end)
     settle(session)
     target = session.project.layer.keys[0].pose.targets[1]
@@ -199,7 +197,9 @@ def test_a_box_selects_what_is_in_it(session, shift):
         editing.select_handles(session, frozenset({0}))
         tool_pointer.press_pointer(session, PointerHit(place=corner, shift=shift))
         tool_pointer.move_pointer(session, opposite)
-        assert session.active_tool.tool_overlays == (BoxOverlay(corner=corner, opposite=opposite),)
+        area, edge = session.active_tool.shapes(opposite, 1.0)
+        assert area.points == edge.points
+        assert area.points[::2] == [corner, opposite]
         tool_pointer.release_pointer(session, opposite)
         assert session.project.selected_handles == inside | kept
 
@@ -245,6 +245,12 @@ def test_there_is_a_hint_wherever_something_can_be_done(session, spot):
         tool_pointer.cancel_tool(session)
 
 
+def tags(session):
+    """Return the texts that the active tool shows."""
+    shapes = session.active_tool.shapes(0j, 1.0)
+    return [shape.text for shape in shapes if isinstance(shape, TagShape)]
+
+
 def target(session, identity=0):
     settle(session)
     return session.project.layer.keys[0].pose.targets[identity]
@@ -254,11 +260,11 @@ def test_a_drag_goes_as_far_as_is_typed_whatever_the_pointer_does(session):
     drag(session, AT_LEFT, LEFT + 3)
     tool_pointer.type_in_tool(session, "4")
     tool_pointer.type_in_tool(session, "0")
-    assert [mark.text for mark in session.active_tool.tool_overlays] == ["40 px"]
+    assert tags(session) == ["40 px"]
     tool_pointer.move_pointer(session, LEFT + 6j)
     assert target(session).position == pytest.approx(LEFT + 40j)
     tool_pointer.type_in_tool(session, "y")
-    assert [mark.text for mark in session.active_tool.tool_overlays] == ["Y 40 px"]
+    assert tags(session) == ["Y 40 px"]
     assert target(session).position == pytest.approx(LEFT - 40j)
     tool_pointer.release_pointer(session, LEFT)
     assert target(session).position == pytest.approx(LEFT - 40j)
