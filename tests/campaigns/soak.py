@@ -18,12 +18,13 @@ from imgui_bundle import imgui
 from layered import blob, openraster
 from PIL import Image
 
+from app.document import scene_commands
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, FrameRange, Meshing
 from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
-from app.editor.actions.project_files import export_settings, exporting, saving
+from app.editor.actions.project_files import exporting, saving
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import attach_layer
 from app.export_formats import EXPORT_FORMATS, MeshOptions
@@ -216,7 +217,7 @@ def export(window: Harness, folder: Path, name: str) -> None:
         frames=FrameRange(0, 5),
         shapes=MeshOptions(triangles=200),
     )
-    export_settings.set_export_settings(session, settings)
+    editing.edit_document(session, scene_commands.set_export(settings))
     suffixes = EXPORT_FORMATS[name].suffixes
     exporting.start_export(session, place / f"a{suffixes[0]}" if suffixes else place)
     while session.export.run is not None or session.jobs.kinds:

@@ -6,7 +6,6 @@ from functools import reduce
 import numpy as np
 
 from app.document import (
-    BlendMode,
     ancestor_paths,
     combine_commands,
     common_path,
@@ -77,11 +76,6 @@ def is_layer_at(project: Project, identity: int, place: complex) -> bool:
 def rename_layer(session: Session, identity: int, name: str) -> None:
     if name.strip():
         editing.edit_document(session, layer_commands.rename_layer(identity, name))
-
-
-def move_layer(session: Session, identity: int, index: int) -> None:
-    """Move a layer to an index in the order from back to front."""
-    editing.edit_document(session, layer_commands.move_layer(identity, index))
 
 
 @with_project
@@ -175,14 +169,6 @@ def _whole_group(project: Project, identities: Sequence[int]) -> str:
     return ""
 
 
-def ungroup_layers(session: Session, path: str) -> None:
-    editing.edit_document(session, group_commands.ungroup_layers(path))
-
-
-def rename_group(session: Session, path: str, name: str) -> None:
-    editing.edit_document(session, group_commands.rename_group(path, name))
-
-
 @with_project
 def toggle_reference(session: Session, project: Project, identity: int) -> None:
     """Exclude a layer from exports, or include it again."""
@@ -190,27 +176,11 @@ def toggle_reference(session: Session, project: Project, identity: int) -> None:
     editing.edit_document(session, layer_commands.set_reference(identity, reference=not reference))
 
 
-def set_layer_opacity(session: Session, identity: int, opacity: float) -> None:
-    editing.edit_document(session, layer_commands.set_opacity(identity, opacity))
-
-
-def set_blend_mode(session: Session, identity: int, mode: BlendMode) -> None:
-    editing.edit_document(session, layer_commands.set_blend(identity, mode))
-
-
 @with_project
 def toggle_clipping(session: Session, project: Project, identity: int) -> None:
     """Clip a layer to the layer below, or release it."""
     clipped = project.document.layer(identity).clipped
     editing.edit_document(session, layer_commands.set_clipped(identity, clipped=not clipped))
-
-
-def set_group_opacity(session: Session, path: str, opacity: float) -> None:
-    editing.edit_document(session, group_commands.set_group_opacity(path, opacity))
-
-
-def set_group_blend_mode(session: Session, path: str, mode: BlendMode) -> None:
-    editing.edit_document(session, group_commands.set_group_blend(path, mode))
 
 
 @with_project

@@ -32,15 +32,6 @@ def add_to_switch(session: Session, name: str, *identities: int) -> None:
     editing.edit_document(session, switch_group_commands.add_to_switch_group(name, identities))
 
 
-def remove_from_switch(session: Session, identity: int) -> None:
-    editing.edit_document(session, switch_group_commands.remove_from_switch_group(identity))
-
-
 def rename_switch(session: Session, name: str, new: str) -> None:
     if new.strip():
         editing.edit_document(session, switch_group_commands.rename_switch_group(name, new))
-
-
-def delete_switch(session: Session, name: str) -> None:
-    """Delete a switch; its layers have their own visibility again."""
-    editing.edit_document(session, switch_group_commands.delete_switch_group(name))

@@ -171,8 +171,3 @@ def _between(one: Target, other: Target, share: float) -> Target:
 def rename_library_pose(session: Session, project: Project, name: str, to: str) -> None:
     editing.edit_layer(session, pose_commands.rename_pose, name, to)
     project.picked_pose = (project.active, to)
-
-
-def delete_library_pose(session: Session, name: str) -> None:
-    """Delete a pose from the library; keys made from it stay."""
-    editing.edit_layer(session, pose_commands.delete_pose, name)

@@ -5,7 +5,6 @@ from imgui_bundle import imgui
 from app.document import shape_commands
 from app.editor import Action, Project, do
 from app.editor.actions import editing
-from app.editor.actions.timing import keys
 from app.texts import _
 from app.ui.methods import VARIANTS
 from app.ui.style.widgets import draw_tooltip
@@ -16,7 +15,7 @@ def draw_method_menu(project: Project) -> list[Action]:
     actions: list[Action] = []
     for variant, text in VARIANTS.items():
         if imgui.menu_item(text.title, "", variant == project.layer.variant)[0]:
-            actions.append(do(keys.set_inbetween_method, variant))
+            actions.append(do(editing.edit_layer, shape_commands.set_variant, variant))
         draw_tooltip(text.what)
     imgui.separator()
     stays = project.layer.has_auto_pins

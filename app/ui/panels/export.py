@@ -70,7 +70,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
     else:
         chosen = _frames(look, project, chosen)
     if chosen != settings:
-        actions.append(do(export_settings.set_export_settings, chosen))
+        actions.append(do(editing.edit_document, scene_commands.set_export(chosen)))
     heading(look, _("Output"))
     return actions + _output(session, look, project)
 

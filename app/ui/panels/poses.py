@@ -5,9 +5,9 @@ from itertools import groupby
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import LibraryPose, Pose, format_pairs
+from app.document import LibraryPose, Pose, format_pairs, pose_commands
 from app.editor import Action, Project, Session, do
-from app.editor.actions import viewing
+from app.editor.actions import editing, viewing
 from app.editor.poses import flipping, library, pasting
 from app.texts import _
 from app.ui.shortcuts.widgets import draw_action_button, draw_action_text_button
@@ -183,7 +183,7 @@ def _menu(kept: LibraryPose, owner: int, *, is_own: bool) -> list[Action]:
             actions.append(do(library.apply_library_pose, kept.name, owner))
         asks = is_own and imgui.menu_item_simple(_("Rename…"))
         if is_own and imgui.menu_item_simple(_("Delete")):
-            actions.append(do(library.delete_library_pose, kept.name))
+            actions.append(do(editing.edit_layer, pose_commands.delete_pose, kept.name))
         imgui.end_popup()
     if asks:
         imgui.open_popup("name")

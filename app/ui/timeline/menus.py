@@ -12,8 +12,10 @@ from app.document import (
     Key,
     KeysByChannel,
     TangentMode,
+    channel_commands,
     display_frame,
     frames_in,
+    key_commands,
     track_commands,
     track_in,
 )
@@ -78,7 +80,9 @@ def _motion_items(key: BaseKey, taken: KeysByChannel) -> list[Action]:
         for tangent, (name, hint) in TANGENT_MODES.items():
             chosen = key.shown_tangent_mode is tangent
             if imgui.menu_item(f"{name}###{tangent}", "", chosen)[0]:
-                actions.append(do(keys.set_tangent_mode, taken, tangent))
+                actions.append(
+                    do(editing.edit_document, channel_commands.set_tangent_mode(taken, tangent))
+                )
             draw_tooltip(hint)
         imgui.end_menu()
     if imgui.begin_menu(_("Easing")):
@@ -197,7 +201,7 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     if imgui.menu_item_simple(
         _("Copy first pose to last key"), enabled=len(project.layer.keys) > 1
     ):
-        actions.append(do(keys.match_loop_ends))
+        actions.append(do(editing.edit_layer, key_commands.match_loop_ends))
     imgui.separator()
     for spec in (
         keys.start_preview_at_playhead,

@@ -6,9 +6,9 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from app.document import Channel, Key, Quantity, ValueField
+from app.document import Channel, Key, Quantity, ValueField, channel_commands
 from app.editor import Action, do
-from app.editor.actions.timing import channel_keys
+from app.editor.actions import editing
 from app.texts import N_, _
 from app.ui.style.sliders import number_field
 from app.ui.style.theme import Look
@@ -38,7 +38,9 @@ def draw_value_fields(look: Look, channel: Channel[Any], key: Key[Any]) -> list[
         entered = _draw_number(look, channel, key, each)
         if entered is not None:
             value = replace(key.value, **{each.name: entered}) if _is_part(channel) else entered
-            actions.append(do(channel_keys.set_key_value, channel, key.frame, value))
+            actions.append(
+                do(editing.edit_document, channel_commands.set_key(channel, key.frame, value))
+            )
     if shown:
         imgui.separator()
     return actions

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from projects import project_of
 from sessions import run_update_steps, session_of, settle
 
+from app.document import shape_commands
 from app.document.channels.tangent_mode import TangentMode
 from app.document.commands.keys import (
     channel_commands,
@@ -20,7 +21,6 @@ from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.editor.actions import editing, viewing
 from app.editor.actions.frame_update import STREAMING, due_jobs
-from app.editor.actions.timing import keys
 from app.editor.parts.settings import SessionSettings
 from app.editor.session import Session
 from app.editor.work.drag_session import DragSession
@@ -153,7 +153,7 @@ def test_another_method_of_the_split_view_finds_the_layers_own(document, tmp_pat
     assert other is not None
     assert comparison.shown.is_current
     # The layer takes the method that it was compared with.
-    keys.set_inbetween_method(session, "eta")
+    editing.edit_layer(session, shape_commands.set_variant, "eta")
     assert store.prepared(project.clip) == other
 
 
@@ -162,7 +162,7 @@ def test_undo_and_redo_find_what_was_made(document, tmp_path):
     project, store = session.project, session.project.layer_runtime.store
     made = [store.prepared(project.clip)]
     for variant in ("eta", "nu", "eta"):
-        keys.set_inbetween_method(session, variant)
+        editing.edit_layer(session, shape_commands.set_variant, variant)
         settle(session)
         made.append(store.prepared(project.clip))
     assert made[0] == made[2]

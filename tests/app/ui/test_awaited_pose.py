@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from bars import HALF, LAST, bend_bar
 
+from app.document import shape_commands
 from app.document.commands.keys import (
     key_commands,
 )
@@ -13,7 +14,6 @@ from app.editor.actions import editing, playback
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.actions.project_files import export_settings
-from app.editor.actions.timing import keys
 from app.motion import Animation
 
 FRAME, TURN = HALF, np.exp(0.5j)
@@ -23,7 +23,7 @@ WAY = 30 - 20j  # pixels of the picture
 def bend_by_nu(window):
     """Bend the bar loosely: which in-between it is that is awaited is not asked."""
     window.again(bend_bar, LAST, "loose")
-    keys.set_inbetween_method(window.session, "nu")
+    editing.edit_layer(window.session, shape_commands.set_variant, "nu")
     window.settle()
 
 

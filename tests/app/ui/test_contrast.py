@@ -9,7 +9,7 @@ from layered import openraster
 from legibility import LEAST, contrast, glyphs
 from PIL import Image
 
-from app.document import Variant
+from app.document import Variant, layer_commands
 from app.document.keyframe import Target
 from app.editor import FileDialog, Question, do
 from app.editor.actions import dialog_actions, editing, playback, viewing
@@ -18,7 +18,6 @@ from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.posing.pose_drag import nudge_handles, set_targets
 from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_list import (
-    set_layer_opacity,
     toggle_layers_hidden,
     toggle_visibility_key,
 )
@@ -173,7 +172,7 @@ def test_layers_that_are_chosen_hidden_and_switched(window, tmp_path, check):
     project = window.open(path)
     session = window.session
     (wall, _, arm) = (layer.id for layer in project.document.layers)
-    set_layer_opacity(session, arm, 0.5)
+    editing.edit_document(session, layer_commands.set_opacity(arm, 0.5))
     toggle_layers_hidden(session, arm)
     toggle_visibility_key(session, wall)
     playback.seek(session, 12)

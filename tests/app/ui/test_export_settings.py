@@ -5,7 +5,9 @@ from dataclasses import replace
 import pytest
 from imgui_bundle import imgui
 
+from app.document import scene_commands
 from app.document.settings import ExportSettings
+from app.editor.actions import editing
 from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.actions.timing import keys
 from app.editor.parts.dialogs import FileDialog
@@ -48,7 +50,9 @@ def choose(window, loose, monkeypatch):
 def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path):
     session = window.session
     keys.set_last_frame(session, 24)
-    export_settings.set_export_settings(session, ExportSettings(format="gif", size=SIZE))
+    editing.edit_document(
+        session, scene_commands.set_export(ExportSettings(format="gif", size=SIZE))
+    )
     window.show_tab("Handle")
     seen = []
 
@@ -79,12 +83,12 @@ def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path)
 
 def test_each_format_has_the_pictures_that_it_had_last(window, loose, tmp_path, choose):
     settings = replace(loose.document.export, size=SIZE)
-    export_settings.set_export_settings(window.session, settings)
+    editing.edit_document(window.session, scene_commands.set_export(settings))
     assert choose("mp4").background == "#ffffff"
     # Chosen for the first time: as large as what was chosen before.
     assert loose.document.export.size == SIZE
     film = replace(loose.document.export, size=(128, 64), background="#203040")
-    export_settings.set_export_settings(window.session, film)
+    editing.edit_document(window.session, scene_commands.set_export(film))
     assert choose("webm").background == "transparent", "only MP4 needs one"
     for name, size, background in (
         ("png", SIZE, "transparent"),
@@ -99,14 +103,15 @@ def test_each_format_has_the_pictures_that_it_had_last(window, loose, tmp_path, 
     assert again == loose.document.export
     assert again.in_format("mp4").background == "#203040"
     # A background that was chosen where it need not be goes along.
-    export_settings.set_export_settings(
-        window.session, replace(loose.document.export, background="#ff0000")
+    editing.edit_document(
+        window.session,
+        scene_commands.set_export(replace(loose.document.export, background="#ff0000")),
     )
     assert choose("mov").background == "#ff0000"
 
 
 def test_names_do_not_grow_from_format_to_format(window, loose, tmp_path, choose):
-    export_settings.set_export_settings(window.session, ExportSettings(size=SIZE))
+    editing.edit_document(window.session, scene_commands.set_export(ExportSettings(size=SIZE)))
     export_settings.set_export_destination(window.session, tmp_path / "walk frames")
     for name, file in (
         ("mp4", "walk.mp4"),
@@ -134,7 +139,9 @@ def test_names_do_not_grow_from_format_to_format(window, loose, tmp_path, choose
 def test_another_format_of_the_same_name_asks_before_it_replaces(window, tmp_path, choose):
     session = window.session
     keys.set_last_frame(session, 24)
-    export_settings.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
+    editing.edit_document(
+        session, scene_commands.set_export(ExportSettings(format="spritesheet", size=SIZE))
+    )
     window.act(export_settings.start_export_at, tmp_path / "walk.png")
     window.until(lambda: (tmp_path / "walk.json").exists() and session.export.run is None)
     sheet = (tmp_path / "walk.png").read_bytes()
@@ -160,7 +167,7 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     monkeypatch.setattr(imgui, "text_unformatted", lambda text: (written.append(text), draw(text)))
     monkeypatch.setattr(imgui, "text_colored", see_fact)
     window.frames()
-    export_settings.set_export_settings(session, ExportSettings(size=SIZE))
+    editing.edit_document(session, scene_commands.set_export(ExportSettings(size=SIZE)))
     window.show_tab("Handle")
     window.clock.cost = 0.02
     try:

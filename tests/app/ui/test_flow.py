@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from app.document import scene_commands, shape_commands
 from app.document.commands.shape_commands import set_anchor
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, Meshing
@@ -12,8 +13,7 @@ from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle, remove_handles, toggle_anchor_at_handle
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
-from app.editor.actions.project_files import export_settings, exporting, saving
-from app.editor.actions.timing import keys
+from app.editor.actions.project_files import exporting, saving
 from app.render.view import View
 from app.storage.assets import sample_images
 from app.ui.viewport import marks
@@ -98,7 +98,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     window.settle()
     assert project.history.is_saved
     out = tmp_path / "frames"
-    export_settings.set_export_settings(session, ExportSettings(framing="canvas"))
+    editing.edit_document(session, scene_commands.set_export(ExportSettings(framing="canvas")))
     exporting.start_export(session, out)
     while session.export.run is not None or session.jobs.kinds:
         window.settle()
@@ -218,7 +218,7 @@ def test_a_shape_that_is_held_back_is_left_alone_when_the_hand_lets_go(window, b
 @pytest.mark.usefixtures("everything")
 def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     session = window.session
-    keys.set_inbetween_method(session, "metric")
+    editing.edit_layer(session, shape_commands.set_variant, "metric")
     playback.seek(session, 24)
     window.settle()
     set_targets(session, {1: Target(position=handle_places(bar)[1] + 120j)})

@@ -6,13 +6,14 @@ from imgui_bundle import ImVec2
 from newcomer import Newcomer
 from PIL import Image
 
+from app.document import scene_commands, shape_commands
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings
 from app.editor.actions import dialog_actions, editing, playback, tutorials, viewing
 from app.editor.actions.layer_setup import stiffness_editing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
-from app.editor.actions.project_files import export_settings, exporting, saving
+from app.editor.actions.project_files import exporting, saving
 from app.editor.actions.timing import keys
 from app.storage.assets import sample_images
 from app.ui.window.tutorial.card import NAME
@@ -133,7 +134,7 @@ def test_the_giraffe_bows(window):
 def test_the_same_steps_lead_through_an_own_drawing(window, led, tmp_path):
     project = window.session.project
     # Neither is needed, but with them in-betweens and the export take less.
-    window.act(keys.set_inbetween_method, "nu")
+    window.act(editing.edit_layer, shape_commands.set_variant, "nu")
     window.act(keys.set_last_frame, 12)
     for place in places_of_bar(window):
         assert led.step == "handle"
@@ -149,7 +150,8 @@ def test_the_same_steps_lead_through_an_own_drawing(window, led, tmp_path):
     led.show_tab("Export")
     assert "Choose GIF" in words(window)
     window.act(
-        export_settings.set_export_settings, ExportSettings(format=tutorials.FORMAT, size=(120, 40))
+        editing.edit_document,
+        scene_commands.set_export(ExportSettings(format=tutorials.FORMAT, size=(120, 40))),
     )
     window.frames(2)
     assert "Click Export" in words(window)

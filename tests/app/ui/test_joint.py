@@ -32,7 +32,7 @@ from app.editor.actions.layer_setup.layer_runtimes import update_layer_runtimes
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.actions.project_files import recovery
-from app.editor.layering.layer_list import move_layer, toggle_clipping
+from app.editor.layering.layer_list import toggle_clipping
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import PARENT_IS_DESCENDANT, detach_layer
 from app.editor.layering.pictures import add_layers
@@ -404,7 +404,7 @@ def nodding(window, swung):
     wall = make_still_layer(wall)
     swung.history.do(layer_commands.add_layer(wall), gesture=None)
     update_layer_runtimes(swung)
-    window.act(move_layer, wall.id, 0)
+    window.act(editing.edit_document, layer_commands.move_layer(wall.id, 0))
     window.act(viewing.set_onion_skin, 1, 1, 12)
     window.act(playback.seek, 12)
     window.act(viewing.toggle_overlay, "handles")

@@ -5,12 +5,18 @@ from itertools import count
 import numpy as np
 import pytest
 
-from app.document import Pose, channel_commands, pose_channel, segment_keys, segment_time_at
+from app.document import (
+    Pose,
+    channel_commands,
+    pose_channel,
+    segment_keys,
+    segment_time_at,
+    shape_commands,
+)
 from app.document.keyframe import Target
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag
 from app.editor.actions.posing.pose_solver import POSING, STEPS
-from app.editor.actions.timing import keys
 from app.motion import PoseSampler
 from app.motion.inbetweens.auto_pins import AutoPins
 from app.motion.inbetweens.segment_keys import segment_key
@@ -141,7 +147,7 @@ def check(bent):
     ids=["let go", "held, too"],
 )
 def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant, ends):
-    keys.set_inbetween_method(window.session, variant)
+    editing.edit_layer(window.session, shape_commands.set_variant, variant)
     window.settle()
     window.session.clock = count(step=1 / 60).__next__
 

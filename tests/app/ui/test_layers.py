@@ -39,9 +39,7 @@ from app.editor.actions.timing import keys, timeline_drag
 from app.editor.layering.layer_list import (
     duplicate_layer,
     layer_at,
-    move_layer,
     rename_layer,
-    set_layer_opacity,
     toggle_layers_hidden,
     toggle_visibility_key,
 )
@@ -346,7 +344,7 @@ def test_the_list_shows_small_pictures(window, scene, listed):
     small = scene.layer_runtimes[arm].small.value
     assert max(small.shape[:2]) == 96
     # Made once, whatever else is done with the layer.
-    window.act(set_layer_opacity, arm, 0.5)
+    window.act(editing.edit_document, layer_commands.set_opacity(arm, 0.5))
     window.settle()
     assert scene.layer_runtimes[arm].small.value is small
 
@@ -893,8 +891,8 @@ def posed(window, scene):
 def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     arm = identity(posed, "arm")
     window.act(rename_layer, arm, "limb")
-    window.act(set_layer_opacity, arm, 0.75)
-    window.act(move_layer, arm, 1)
+    window.act(editing.edit_document, layer_commands.set_opacity(arm, 0.75))
+    window.act(editing.edit_document, layer_commands.move_layer(arm, 1))
     before = posed.document
     green = saved(tmp_path / "green.png", painted((85, 66, 205, 99), (30, 180, 60, 255)))
     window.act(set_active_layer, identity(posed, "body"))

@@ -5,7 +5,7 @@ import pytest
 from bars import BENT
 from imgui_bundle import ImVec2
 
-from app.document import Target, handle_commands
+from app.document import Target, handle_commands, stiffness_commands
 from app.document.rig.stiffness import Bone
 from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import stiffness_editing
@@ -177,7 +177,7 @@ def test_names_suggest_what_is_stiff_and_what_is_soft(window, tab):
 
 def test_hidden_bones_act_and_a_handle_that_goes_takes_its_bones_along(window, tab):
     stiffness_editing.add_bone(window.session, ENDS)
-    stiffness_editing.set_bones_visible(window.session, shown=False)
+    editing.edit_layer(window.session, stiffness_commands.set_bones_visible, shown=False)
     assert tab.layer.bones == (Bone(ends=ENDS, is_shown=False),)
     remove_handles(window.session, frozenset({ENDS[1]}))
     window.settle()
@@ -215,6 +215,6 @@ def test_colours_are_worked_out_anew_only_where_something_is_stiff_otherwise(win
     playback.scrub(window.session, 3)
     window.settle()
     assert len(calls) == 1
-    stiffness_editing.set_bone_stiffness(window.session, ENDS, 20.0)
+    editing.edit_layer(window.session, stiffness_commands.set_bone_stiffness, ENDS, 20.0)
     window.settle()
     assert len(calls) == 2

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from app.document import scene_commands
 from app.document.settings import ExportSettings
 from app.editor.action import do
-from app.editor.actions import dialog_actions
+from app.editor.actions import dialog_actions, editing
 from app.editor.actions.project_files import export_settings, files, recovery, saving
 from app.editor.actions.timing import keys
 from app.editor.parts.dialogs import FileDialog
@@ -147,7 +148,7 @@ def note(chosen, _, path):
 def test_an_export_goes_there(window, folder, kind, ending):
     name = f"{NAME}{ending}"
     window.act(keys.set_last_frame, 2)
-    window.act(export_settings.set_export_settings, ExportSettings(format=kind))
+    window.act(editing.edit_document, scene_commands.set_export(ExportSettings(format=kind)))
     window.show_tab("Export")
     window.act(export_settings.start_export_at, folder / name)
     window.until(lambda: window.session.notices.toasts)

@@ -8,7 +8,7 @@ import pytest
 from bars import check_at_rest, drag_bar
 from PIL import Image
 
-from app.document import channel_commands, pose_channel
+from app.document import channel_commands, pose_channel, shape_commands
 from app.document.commands import scene_commands
 from app.document.keyframe import Target
 from app.document.settings import FrameRange
@@ -19,7 +19,6 @@ from app.editor.actions.posing.inserting import INSERTING, insert_key
 from app.editor.actions.posing.pose_drag import release_drag, set_targets
 from app.editor.actions.posing.pose_solver import POSING, is_display_final
 from app.editor.actions.project_files import exporting, saving
-from app.editor.actions.timing import keys
 from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.pictures import add_layers, make_still
@@ -35,7 +34,7 @@ def loosened(bounds):
 
 # Commands of the menus are asked for in `test_commands_after_drags`.
 FOLLOWS = {
-    "variant": lambda session: keys.set_inbetween_method(session, "nu"),
+    "variant": lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     "limits": lambda session: resolving.set_limits(session, loosened(session.project.layer.bounds)),
     "solve again": resolving.solve_keys_again,
     "another drag elsewhere": lambda session: (

@@ -32,7 +32,12 @@ from app.document import (
     all_keys,
     channel_commands,
     frames_in,
+    key_commands,
     pose_channel,
+    pose_commands,
+    scene_commands,
+    stiffness_commands,
+    switch_group_commands,
 )
 from app.document.channels.easing import PRESETS, Easing
 from app.document.channels.springs import Spring
@@ -65,13 +70,10 @@ from app.editor.actions.posing.pose_drag import (
     release_drag,
     set_targets,
 )
-from app.editor.actions.project_files import export_settings
 from app.editor.actions.timing import channel_keys, keys, springs, timeline_drag, tracks
 from app.editor.layering.layer_list import (
     duplicate_layer,
-    move_layer,
     rename_layer,
-    set_layer_opacity,
     toggle_layers_hidden,
     toggle_layers_locked,
     toggle_reference,
@@ -85,7 +87,7 @@ from app.editor.layering.parenting import (
     set_inherits_rotation,
 )
 from app.editor.layering.pictures import add_layers, make_posable, make_still
-from app.editor.layering.switches import create_switch, delete_switch
+from app.editor.layering.switches import create_switch
 from app.editor.parts.timeline import TimeRangeView
 from app.editor.poses import copying, flipping, library, pasting, pasting_targets
 from app.editor.work import drag_session
@@ -523,7 +525,11 @@ class Walk:
 
     def change_variant(self) -> None:
         # The costlier ones are left again soon.
-        self.act(keys.set_inbetween_method, self.choice((*VARIANTS, *("nu", "linear") * 4)))
+        self.act(
+            editing.edit_layer,
+            shape_commands.set_variant,
+            self.choice((*VARIANTS, *("nu", "linear") * 4)),
+        )
 
     def change_bounds(self) -> None:
         wanted = Bounds(
@@ -562,7 +568,7 @@ class Walk:
         if len(layer.library) < 3:
             self.act(library.save_pose_to_library)
         elif self.chance(0.2):
-            self.act(library.delete_library_pose, self.choice(layer.library).name)
+            self.act(editing.edit_layer, pose_commands.delete_pose, self.choice(layer.library).name)
         for kept in self.project.layer.library[:1]:
             match self.rng.integers(4):
                 case 0:
@@ -583,7 +589,10 @@ class Walk:
         marker = self.choice(self.document.markers)
         match self.rng.integers(3):
             case 0:
-                self.act(keys.rename_marker, marker.frame, f"m {self.rng.integers(99)}")
+                self.act(
+                    editing.edit_document,
+                    scene_commands.rename_marker(marker.frame, f"m {self.rng.integers(99)}"),
+                )
             case 1:
                 self.act(keys.delete_marker, marker.frame)
             case 2:
@@ -605,7 +614,7 @@ class Walk:
             case 5:
                 self.act(keys.reverse_selected_keys)
             case 6:
-                self.act(keys.match_loop_ends)
+                self.act(editing.edit_layer, key_commands.match_loop_ends)
             case 7:
                 self.act(keys.toggle_loop)
             case 8:
@@ -633,7 +642,10 @@ class Walk:
             case 3 | 1 | 2 if len(layers) > 1:
                 self.act(delete_layers, layer.id)
             case 4:
-                self.act(move_layer, layer.id, int(self.rng.integers(len(layers))))
+                self.act(
+                    editing.edit_document,
+                    layer_commands.move_layer(layer.id, int(self.rng.integers(len(layers)))),
+                )
             case 5:
                 verb = self.choice(
                     (
@@ -645,7 +657,10 @@ class Walk:
                 self.act(verb, layer.id)
             case 6:
                 self.act(rename_layer, layer.id, self.choice(("arm", "leg", "")))
-                self.act(set_layer_opacity, layer.id, float(self.rng.random()))
+                self.act(
+                    editing.edit_document,
+                    layer_commands.set_opacity(layer.id, float(self.rng.random())),
+                )
             case 7:
                 delete = channel_keys.delete_channel_key, Channel(VISIBILITY, layer.id)
                 self.act(*self.choice(((toggle_visibility_key, layer.id), delete)))
@@ -714,7 +729,12 @@ class Walk:
             case 5:
                 self.act(create_switch, *{layer, other})
             case 6 if self.document.switch_groups:
-                self.act(delete_switch, self.choice(self.document.switch_groups).name)
+                self.act(
+                    editing.edit_document,
+                    switch_group_commands.delete_switch_group(
+                        self.choice(self.document.switch_groups).name
+                    ),
+                )
 
     def change_depth(self) -> None:
         layer = self.project.layer
@@ -751,12 +771,13 @@ class Walk:
             case "amount" if layer.bones:
                 bone = self.choice(layer.bones)
                 self.act(
-                    stiffness_editing.set_bone_stiffness,
+                    editing.edit_layer,
+                    stiffness_commands.set_bone_stiffness,
                     bone.ends,
                     float(self.rng.uniform(0.1, 100)),
                 )
             case "clear":
-                self.act(stiffness_editing.clear_stiffness)
+                self.act(editing.edit_layer, stiffness_commands.clear_stiffness)
             case "mirror":
                 self.act(stiffness_editing.mirror_stiffness)
             case "names":
@@ -777,7 +798,7 @@ class Walk:
                 way = self.rng.uniform(0, width, count) + 1j * self.rng.uniform(0, height, count)
                 radius = float(self.rng.uniform(2, 12))
                 stroke = Stroke(points=way, radius=radius, keeps=self.chance(0.7))
-                self.act(cut_out_editing.cut_with_brush, stroke)
+                self.act(editing.edit_layer, shape_commands.cut_with_brush, stroke)
             case 3:
                 self.act(cut_out_editing.set_background_tolerance, int(self.rng.integers(10, 30)))
             case 4:
@@ -803,7 +824,7 @@ class Walk:
             framing=self.choice(("canvas", "fit")),
             frames=self.choice((None, FrameRange(*frames))),
         )
-        self.act(export_settings.set_export_settings, settings)
+        self.act(editing.edit_document, scene_commands.set_export(settings))
 
     def undo(self) -> None:
         for _ in range(self.rng.integers(1, 4)):
@@ -961,7 +982,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     project = window.open(drawing(tmp_path / ("bones.ora" if seed % 2 else "bone.png")))
     first = project.document
     if seed % 5 == 0:
-        keys.set_inbetween_method(window.session, "metric")
+        editing.edit_layer(window.session, shape_commands.set_variant, "metric")
     walk = Walk(window, seed, workers, Widgets(monkeypatch), tmp_path)
     workers.hold()
     for number in range(number_of_steps(request.config, seed)):

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from held import held, in_use
 
+from app.document import shape_commands
 from app.document.commands.layers import layer_commands
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.actions.project_files import saving
-from app.editor.actions.timing import keys
 from app.storage.assets import sample_images
 from app.ui.window import memory
 from tests.campaigns import soak
@@ -33,7 +33,7 @@ def slow_window(window, monkeypatch):
 
 @pytest.mark.parametrize("ways", [1, pytest.param(soak.WAYS, marks=pytest.mark.long)])
 def test_what_is_used_for_minutes_on_end_is_given_back(slow_window, bar, tmp_path, ways):
-    keys.set_inbetween_method(slow_window.session, "nu")
+    editing.edit_layer(slow_window.session, shape_commands.set_variant, "nu")
     slow_window.settle()
 
     def use_in_every_way():

@@ -8,7 +8,7 @@ from PIL import Image
 from projects import project_of
 from sessions import run_update_steps
 
-from app.document import channel_commands, pose_channel
+from app.document import channel_commands, pose_channel, scene_commands
 from app.document.commands.keys import (
     key_commands,
 )
@@ -19,7 +19,6 @@ from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup.resolving import SOLVING_KEYS
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import set_targets
-from app.editor.actions.project_files import export_settings
 from app.export_formats import MeshOptions, SpriteSheetOptions
 from app.motion.extents.extent import extent_key
 from app.storage import NO_FOLDER
@@ -390,14 +389,15 @@ def test_what_single_formats_ask_is_entered(window, project, tab):
         robot.item_click("**/tolerance/###Custom")
         robot.item_input_value("**/##tolerance", 0.25)
 
-    export_settings.set_export_settings(
-        window.session, replace(project.document.export, format="spritesheet")
+    editing.edit_document(
+        window.session,
+        scene_commands.set_export(replace(project.document.export, format="spritesheet")),
     )
     tab("Export", lay_out)
     wanted = SpriteSheetOptions(trimmed=False, padding=256, power_of_two=True)
     assert project.document.export.sheet == wanted
-    export_settings.set_export_settings(
-        window.session, replace(project.document.export, format="glb")
+    editing.edit_document(
+        window.session, scene_commands.set_export(replace(project.document.export, format="glb"))
     )
     tab("Export", detail)
     assert project.document.export.shapes == MeshOptions(triangles=900, tolerance=0.25)
@@ -459,7 +459,9 @@ def test_extent_follows_undo_and_redo_at_once(window, project, tab):
 
 def test_export_starts_repeats_and_reports(window, project, tab, tmp_path):
     session = window.session
-    export_settings.set_export_settings(session, replace(project.document.export, size=(80, 60)))
+    editing.edit_document(
+        session, scene_commands.set_export(replace(project.document.export, size=(80, 60)))
+    )
 
     def choose(robot):
         robot.item_click("**/range/###own")

@@ -27,7 +27,6 @@ from app.editor.actions.layer_setup import resolving
 from app.editor.actions.timing import keys, timeline_drag
 from app.editor.actions.timing.channel_keys import (
     key_camera,
-    set_key_value,
     toggle_camera_view,
 )
 from app.editor.parts.timeline import TimeRangeView
@@ -344,7 +343,10 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     without, _ = mark_all(window.session, project, shown, PALETTES["dark"])
     assert len(with_path) > len(without)
     # In a corner at frame 12 the path is another one.
-    keys.set_tangent_mode(window.session, {pose_channel(0): frozenset({12})}, TangentMode.CORNER)
+    editing.edit_document(
+        window.session,
+        channel_commands.set_tangent_mode({pose_channel(0): frozenset({12})}, TangentMode.CORNER),
+    )
     project.selected_handles = frozenset({1})
     window.settle()
     assert np.abs(project.paths.value.positions - paths.positions)[6:20].max() > 0.1
@@ -754,10 +756,16 @@ def labels(window, monkeypatch):
 @pytest.mark.usefixtures("project")
 def test_only_what_goes_straight_is_called_linear(window, monkeypatch):
     assert labels(window, monkeypatch) == ["smooth"] * 3
-    window.act(keys.set_tangent_mode, {pose_channel(0): {24}}, TangentMode.CORNER)
+    window.act(
+        editing.edit_document,
+        channel_commands.set_tangent_mode({pose_channel(0): {24}}, TangentMode.CORNER),
+    )
     window.settle()
     assert labels(window, monkeypatch) == ["smooth", "smooth", "linear"]
-    window.act(keys.set_tangent_mode, {pose_channel(0): {12}}, TangentMode.STOP)
+    window.act(
+        editing.edit_document,
+        channel_commands.set_tangent_mode({pose_channel(0): {12}}, TangentMode.STOP),
+    )
     window.act(keys.set_easing, {pose_channel(0): {24}}, HOLD)
     window.settle()
     assert labels(window, monkeypatch) == ["smooth", "smooth", "hold"]
@@ -791,7 +799,7 @@ def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, proje
     assert project.view(window.session.screen).centre == complex(*canvas) / 2
     # A key from there, turned, is what it was; looking elsewhere ends it.
     turned = replace(project.document.camera[0].value, turn=7.0)
-    set_key_value(window.session, Channel(CAMERA), 0, turned)
+    editing.edit_document(window.session, channel_commands.set_key(Channel(CAMERA), 0, turned))
     window.settle()
     key_camera(window.session)
     assert project.document.camera[0].value.turn == pytest.approx(7.0)
@@ -838,7 +846,7 @@ def test_what_the_camera_leaves_out_is_dimmed_in_the_viewport(window, project):
     before = brightness(inside), brightness(outside)
     key_camera(window.session)
     near = replace(project.document.camera[0].value, zoom=2.0)
-    set_key_value(window.session, Channel(CAMERA), 0, near)
+    editing.edit_document(window.session, channel_commands.set_key(Channel(CAMERA), 0, near))
     window.settle()
     assert brightness(inside) == before[0]
     assert abs(brightness(outside) - before[1]) > 20

@@ -9,7 +9,7 @@ from harness import PATIENCE
 from imgui_bundle import ImVec2, imgui
 from sessions import run_update_steps
 
-from app.document import channel_commands, pose_channel
+from app.document import channel_commands, pose_channel, shape_commands
 from app.document.channels.tangent_mode import TangentMode
 from app.document.commands import handle_commands
 from app.document.keyframe import Target
@@ -407,7 +407,7 @@ INBETWEENS = (
 
 def test_scrubbing_while_the_worker_builds(window, loose):
     with window.session.jobs.held(*INBETWEENS):
-        keys.set_inbetween_method(window.session, "nu")
+        editing.edit_layer(window.session, shape_commands.set_variant, "nu")
         for frame in (3, 17, 9, 24, 0, 12):
             window.act(playback.scrub, frame)
             window.frames(2)
@@ -421,7 +421,7 @@ def test_scrubbing_while_the_worker_builds(window, loose):
 
 @pytest.mark.usefixtures("everything")
 def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
-    keys.set_inbetween_method(window.session, "nu")
+    editing.edit_layer(window.session, shape_commands.set_variant, "nu")
     editing.edit_document(
         window.session, channel_commands.copy_keys({pose_channel(0): {0, 24}}, 48)
     )
@@ -434,7 +434,7 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
     window.settle()
     assert frames_of(loose) == [0, 24, 48, 72]
     # None of it is known of this one.
-    keys.set_inbetween_method(window.session, "metric")
+    editing.edit_layer(window.session, shape_commands.set_variant, "metric")
     for _ in range(20):
         window.frames()
         window.session.jobs.wait_until_idle()
@@ -447,19 +447,19 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
 FAILURES = {
     "In-betweens": (
         "app.motion.inbetween_cache.compute_segments",
-        lambda session: keys.set_inbetween_method(session, "nu"),
+        lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Measuring": (
         "app.editor.actions.frame_update.measure_curves",
-        lambda session: keys.set_inbetween_method(session, "nu"),
+        lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Measuring the motion": (
         "app.editor.actions.frame_update.measure_extent",
-        lambda session: keys.set_inbetween_method(session, "nu"),
+        lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Smooth playback": (
         "app.motion.inbetween_jobs.build_series",
-        lambda session: keys.set_inbetween_method(session, "nu"),
+        lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Solving the keys": (
         "app.editor.actions.layer_setup.resolving.step_resolver",
@@ -539,7 +539,7 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
 
     monkeypatch.setattr(jobs, "_clock", window.clock)
     monkeypatch.setattr("app.motion.inbetween_cache.compute_segments", endless)
-    window.act(keys.set_inbetween_method, "nu")
+    window.act(editing.edit_layer, shape_commands.set_variant, "nu")
     window.until(lambda: any(jobs.share_of(kind) == 0.4 for kind in jobs.kinds))
     window.clock.now += SLOW
     window.frames(3)
@@ -550,7 +550,9 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
 
 
 WAITING = {
-    frame_update.SKETCHING: lambda session: keys.set_inbetween_method(session, "nu"),
+    frame_update.SKETCHING: lambda session: editing.edit_layer(
+        session, shape_commands.set_variant, "nu"
+    ),
     frame_update.SPANNING: lambda session: (
         setattr(session.project, "extent", Derived(None)),
         export_settings.preview_export_frame(session, BoundingBox(0j, 1 + 1j)),

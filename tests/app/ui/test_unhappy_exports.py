@@ -18,7 +18,7 @@ from imgui_bundle import hello_imgui
 from messages import says
 from PIL import Image
 
-from app.document import PreviewPose
+from app.document import PreviewPose, scene_commands, shape_commands
 from app.document.settings import ExportSettings, FrameRange
 from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup import cut_out_editing
@@ -50,7 +50,7 @@ def project(window):
     project = window.again(Harness.open, BAR)
     add_handle(window.session, complex(*project.document.canvas) / 2)
     keys.set_last_frame(window.session, FRAMES - 1)
-    export_settings.set_export_settings(window.session, ExportSettings(size=SIZE))
+    editing.edit_document(window.session, scene_commands.set_export(ExportSettings(size=SIZE)))
     window.settle()
     window.clock.cost = 0.6 * exporter.BUDGET
     yield project
@@ -151,12 +151,16 @@ def test_frames_that_are_there_are_replaced_only_after_a_question(window, tmp_pa
 
 
 def test_another_format_asks_before_it_replaces_a_file(window, project, tmp_path):
-    export_settings.set_export_settings(window.session, ExportSettings(format="gif", size=SIZE))
+    editing.edit_document(
+        window.session, scene_commands.set_export(ExportSettings(format="gif", size=SIZE))
+    )
     window.act(export_settings.start_export_at, tmp_path / "bar.gif")
     window.settle()
     finish(window)
     (tmp_path / "bar.webp").write_bytes(b"precious")
-    export_settings.set_export_settings(window.session, ExportSettings(format="webp", size=SIZE))
+    editing.edit_document(
+        window.session, scene_commands.set_export(ExportSettings(format="webp", size=SIZE))
+    )
     window.act(export_settings.repeat_export)
     assert question(window).title == REPLACE
     answer(window, "Cancel")
@@ -200,7 +204,9 @@ def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, t
 @pytest.mark.parametrize("name", ["film.apng", "film.webp", "sheet.png", "film.webm"])
 def test_cancelled_file_is_not_there(window, tmp_path, name):
     format_ = "spritesheet" if name == "sheet.png" else name.split(".")[1]
-    export_settings.set_export_settings(window.session, ExportSettings(format=format_, size=SIZE))
+    editing.edit_document(
+        window.session, scene_commands.set_export(ExportSettings(format=format_, size=SIZE))
+    )
     begin(window, tmp_path / name)
     assert list(tmp_path.iterdir()) != []
     window.act(exporting.cancel_export)
@@ -279,7 +285,7 @@ def test_cancel_is_answered_at_once_while_it_is_prepared(window, tmp_path, held,
     format_ = {"frames": "png", "sheet.png": "spritesheet"}.get(name, name[4:])
     few = FrameRange(0, FRAMES - 1)
     settings = ExportSettings(format=format_, size=SIZE, framing="canvas", frames=few)
-    export_settings.set_export_settings(session, settings)
+    editing.edit_document(session, scene_commands.set_export(settings))
     window.settle()
     where = {"sites": (exporting, "PoseSampler"), "intervals": (pose_sampler, "prepare_inbetweens")}
     worker = held(*where[stage])
@@ -334,7 +340,7 @@ def test_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, hel
     session, out = window.session, tmp_path / name
     format_ = "png" if name == "frames" else name[4:]
     settings = ExportSettings(format=format_, size=SIZE, background="#ffffff")
-    export_settings.set_export_settings(session, settings)
+    editing.edit_document(session, scene_commands.set_export(settings))
     window.settle()
     calls = itertools.count()
     worker = held(WRITERS[format_], verb, lambda: next(calls) == at)
@@ -370,7 +376,9 @@ def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
     """Until the disk has all of a file it can be cancelled; then a message says it is there."""
     session, out = window.session, tmp_path / name
     format_ = "picture" if name == "pose.png" else name[4:]
-    export_settings.set_export_settings(session, ExportSettings(format=format_, size=SIZE))
+    editing.edit_document(
+        session, scene_commands.set_export(ExportSettings(format=format_, size=SIZE))
+    )
     worker = held(os, "fsync", is_of_an_export)
     window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
@@ -396,7 +404,9 @@ def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
 @pytest.mark.usefixtures("project")
 def test_a_sheet_and_its_data_are_both_there_or_neither(window, tmp_path, held):
     session, out = window.session, tmp_path / "sheet.png"
-    export_settings.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
+    editing.edit_document(
+        session, scene_commands.set_export(ExportSettings(format="spritesheet", size=SIZE))
+    )
     worker = held(Path, "replace", is_of_an_export)
     window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
@@ -517,7 +527,7 @@ def test_second_export_waits_for_the_first(window, tmp_path):
 
 @pytest.mark.usefixtures("everything")
 def test_export_and_in_betweens_of_the_window_do_not_wait_for_each_other(window, project, tmp_path):
-    keys.set_inbetween_method(window.session, "nu")
+    editing.edit_layer(window.session, shape_commands.set_variant, "nu")
     keys.insert_key_in_row_at(window.session, FRAMES - 1)
     window.settle()
     sampler = project.layer_runtime.store.sampler
@@ -555,7 +565,9 @@ def test_picture_may_go_once_it_is_open(window, tmp_path):
 @pytest.mark.parametrize("name", ["bar.glb", "bar.html"])
 def test_models_are_exported_and_cancelled_as_all_else(window, tmp_path, name):
     session = window.session
-    export_settings.set_export_settings(session, ExportSettings(format=name[4:], size=SIZE))
+    editing.edit_document(
+        session, scene_commands.set_export(ExportSettings(format=name[4:], size=SIZE))
+    )
     window.act(exporting.start_export, tmp_path / name)
     session.jobs.wait_until_idle()
     window.frames()
@@ -587,8 +599,9 @@ def clipboard(tmp_path, monkeypatch):
 
 def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path, clipboard):
     session = window.session
-    export_settings.set_export_settings(
-        session, ExportSettings(format="picture", size=SIZE, framing="canvas")
+    editing.edit_document(
+        session,
+        scene_commands.set_export(ExportSettings(format="picture", size=SIZE, framing="canvas")),
     )
     playback.seek(session, 4)
     window.settle()
@@ -653,12 +666,16 @@ def test_nothing_is_written_over_what_the_project_was_made_from(window, tmp_path
         assert any(re.search(says(SAME_FILE), text, re.IGNORECASE) for text in texts), texts
         assert {path: path.read_bytes() for path in before} == before
 
-    export_settings.set_export_settings(session, ExportSettings(format="picture", size=SIZE))
+    editing.edit_document(
+        session, scene_commands.set_export(ExportSettings(format="picture", size=SIZE))
+    )
     for out in (drawing, link):
         refused(export_settings.start_export_at, out)
         refused(cut_out_editing.save_mask, out)
         refused(saving.write_project, out, None)
     refused(cut_out_editing.save_mask, saved)
-    export_settings.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
+    editing.edit_document(
+        session, scene_commands.set_export(ExportSettings(format="spritesheet", size=SIZE))
+    )
     refused(export_settings.start_export_at, tmp_path / "walk.png")
     assert project.file.path == saved

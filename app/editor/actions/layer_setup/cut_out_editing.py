@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from app.cut_out import CutLine, Mask, Stroke
+from app.cut_out import CutLine, Mask
 from app.document import shape_commands
 from app.editor.action import do
 from app.editor.actions import editing
@@ -133,11 +133,6 @@ def pick_background_colour(session: Session, project: Project, place: complex) -
     ]
     red, green, blue = (int(level) for level in np.median(around.reshape(-1, 3), axis=0))
     set_background(session, (red, green, blue))
-
-
-def cut_with_brush(session: Session, stroke: Stroke) -> None:
-    """Keep or remove the area of a stroke."""
-    editing.edit_layer(session, shape_commands.cut_with_brush, stroke)
 
 
 @with_project

@@ -100,11 +100,6 @@ def paint_stiffness(session: Session, project: Project, places: Sequence[complex
     editing.edit_document(session, command)
 
 
-def clear_stiffness(session: Session) -> None:
-    """Erase all painted stiffness."""
-    editing.edit_layer(session, stiffness_commands.clear_stiffness)
-
-
 @with_project
 def mirror_stiffness(session: Session, project: Project) -> None:
     """Copy the stiffness of one side of the mirror axis to the other."""
@@ -132,19 +127,6 @@ def add_bone_between_selected(session: Session, project: Project) -> None:
     if len(project.selected_handles) == 2:
         first, second = sorted(project.selected_handles)
         add_bone(session, (first, second))
-
-
-def remove_bone(session: Session, ends: tuple[int, int]) -> None:
-    editing.edit_layer(session, stiffness_commands.remove_bone, ends)
-
-
-def set_bone_stiffness(session: Session, ends: tuple[int, int], amount: float) -> None:
-    editing.edit_layer(session, stiffness_commands.set_bone_stiffness, ends, amount)
-
-
-def set_bones_visible(session: Session, *, shown: bool) -> None:
-    """Show or hide the bones; hidden bones still act."""
-    editing.edit_layer(session, stiffness_commands.set_bones_visible, shown=shown)
 
 
 def bone_disabled_reason(project: Project, ends: tuple[int, int]) -> str | None:

@@ -3,9 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from app.document import ExportSettings, scene_commands
 from app.editor.action import Action, do
-from app.editor.actions import editing
 from app.editor.actions.action_spec import named_action
 from app.editor.actions.project_files.exporting import start_export
 from app.editor.parts.dialogs import FileDialog
@@ -63,10 +61,6 @@ def export_destination(project: Project) -> Path | None:
     name, places = project.document.export.format, project.exports.by_format
     newest = next(reversed(places.values()), None)
     return places.get(name) or (with_suffix_for(newest, name) if newest else None)
-
-
-def set_export_settings(session: Session, export: ExportSettings) -> None:
-    editing.edit_document(session, scene_commands.set_export(export))
 
 
 def set_aspect_locked(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the only argument

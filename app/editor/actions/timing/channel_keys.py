@@ -57,11 +57,6 @@ def delete_channel_key(session: Session, project: Project, channel: Channel[Any]
         editing.edit_document(session, channel_commands.delete_keys(keys))
 
 
-def set_key_value(session: Session, channel: Channel[Any], frame: int, value: Any) -> None:
-    """Set the value of a key at a frame."""
-    editing.edit_document(session, channel_commands.set_key(channel, frame, value))
-
-
 @named_action(
     "key camera",
     _("Key the camera"),

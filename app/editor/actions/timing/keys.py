@@ -15,14 +15,12 @@ from app.document import (
     FrameRange,
     KeysByChannel,
     TangentMode,
-    Variant,
     channel_commands,
     combine_commands,
     frames_in,
     key_commands,
     keys_in,
     scene_commands,
-    shape_commands,
     source_frame,
 )
 from app.editor.action import do
@@ -85,11 +83,12 @@ def set_easing(session: Session, project: Project, keys: KeysByChannel, easing: 
     smooth = _smooth_ends(project, keys) if easing == LINEAR else {}
     if smooth:
         frame = min(map(min, smooth.values()))
+        sharpen = channel_commands.set_tangent_mode(smooth, TangentMode.CORNER)
         session.notices.show(
             _(GOES_ON_SMOOTHLY).format(frame=frame),
             topic="easing",
             label=_("Make it a corner"),
-            action=do(set_tangent_mode, smooth, TangentMode.CORNER),
+            action=do(editing.edit_document, sharpen),
         )
 
 
@@ -106,10 +105,6 @@ def _smooth_ends(project: Project, keys: KeysByChannel) -> KeysByChannel:
         if ends and not channel.kind.is_held:
             found[channel] = frozenset(ends)
     return found
-
-
-def set_tangent_mode(session: Session, keys: KeysByChannel, mode: TangentMode) -> None:
-    editing.edit_document(session, channel_commands.set_tangent_mode(keys, mode))
 
 
 def set_revolutions(session: Session, keys: KeysByChannel, turns: int) -> None:
@@ -131,7 +126,8 @@ def use_next_tangent_mode(session: Session, project: Project) -> None:
     channel = project.channel if project.channel in keys else next(iter(keys))
     frame, row = min(keys[channel]), keys_in(project.document, channel)
     first = next(key.shown_tangent_mode for key in row if key.frame == frame)
-    set_tangent_mode(session, keys, passings[(passings.index(first) + 1) % len(passings)])
+    mode = passings[(passings.index(first) + 1) % len(passings)]
+    editing.edit_document(session, channel_commands.set_tangent_mode(keys, mode))
 
 
 @with_project
@@ -199,11 +195,6 @@ def _rearrange(session: Session, project: Project, command: Command) -> None:
     edit_timing(session, command)
     chosen = {channel: frames_in(project.document, channel) - others[channel] for channel in keys}
     editing.select_channel_keys(session, {} if everything else chosen)
-
-
-def match_loop_ends(session: Session) -> None:
-    """Give the last key the pose of the first key."""
-    editing.edit_layer(session, key_commands.match_loop_ends)
 
 
 @named_action(
@@ -281,14 +272,6 @@ def add_marker_at_playhead(session: Session, project: Project) -> None:
     add_marker(session, playback.current_frame(session, project))
 
 
-def rename_marker(session: Session, frame: int, name: str) -> None:
-    editing.edit_document(session, scene_commands.rename_marker(frame, name))
-
-
 def delete_marker(session: Session, frame: int) -> None:
     keys = {Channel(MARKER): frozenset({frame})}
     editing.edit_document(session, channel_commands.delete_keys(keys))
-
-
-def set_inbetween_method(session: Session, variant: Variant) -> None:
-    editing.edit_layer(session, shape_commands.set_variant, variant)

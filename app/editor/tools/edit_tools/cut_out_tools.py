@@ -7,6 +7,8 @@ from typing import Self
 import numpy as np
 
 from app.cut_out import CutLine, Stroke
+from app.document import shape_commands
+from app.editor.actions import editing
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.overlay_shapes import CircleShape, ColourRole, LineShape, OverlayShape, StrokeShape
 from app.editor.project import Project
@@ -59,9 +61,8 @@ class CutBrushTool(Tool):
         if place != self.places[-1]:
             self.places.append(place)
         points = np.array(self.places) - self.project.layer.corner
-        cut_out_editing.cut_with_brush(
-            session, Stroke(points=points, radius=self.radius, keeps=self.keeps)
-        )
+        stroke = Stroke(points=points, radius=self.radius, keeps=self.keeps)
+        editing.edit_layer(session, shape_commands.cut_with_brush, stroke)
 
     @classmethod
     def mode(cls, _session: Session, _project: Project) -> str:

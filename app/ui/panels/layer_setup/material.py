@@ -3,9 +3,9 @@
 import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Layer
+from app.document import Layer, stiffness_commands
 from app.editor import Action, MaterialTool, Project, Session, do
-from app.editor.actions import viewing
+from app.editor.actions import editing, viewing
 from app.editor.actions.layer_setup import cut_out_editing, resolving, stiffness_editing
 from app.editor.actions.posing.pose_drag import pose_at_playhead
 from app.texts import _
@@ -52,7 +52,7 @@ def draw_material_panel(session: Session, look: Look, project: Project) -> list[
     hint, is_painted = _("Delete all strokes; bones stay"), layer.stiffness is not None
     actions = [] if session.tint == "stiffness" else [do(viewing.set_tint, "stiffness")]
     if icon_button(look, icons.ICON_FA_TRASH, "clear material", hint, enabled=is_painted):
-        actions.append(do(stiffness_editing.clear_stiffness))
+        actions.append(do(editing.edit_layer, stiffness_commands.clear_stiffness))
     actions += _tools(session, look) + _brush(session, look, project)
     heading(look, _("Bones"), framed=True)
     actions += _bones(look, layer)
@@ -117,7 +117,9 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
     align_right(1.15 * imgui.get_frame_height())
     eye = icons.ICON_FA_EYE if is_shown else icons.ICON_FA_EYE_SLASH
     if icon_button(look, eye, "show bones", _("Show or hide the bones. Hidden bones act, too.")):
-        actions.append(do(stiffness_editing.set_bones_visible, shown=not is_shown))
+        actions.append(
+            do(editing.edit_layer, stiffness_commands.set_bones_visible, shown=not is_shown)
+        )
     for bone in layer.bones:
         first, second = (layer.handle(identity).name for identity in bone.ends)
         name = f"{first} – {second}"
@@ -126,11 +128,12 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
         imgui.text_unformatted(name)
         align_right(1.15 * imgui.get_frame_height())
         if icon_button(look, icons.ICON_FA_XMARK, "delete bone", _("Delete this bone")):
-            actions.append(do(stiffness_editing.remove_bone, bone.ends))
+            actions.append(do(editing.edit_layer, stiffness_commands.remove_bone, bone.ends))
         hint = _("Stiffness of the limb: 1 is normal")
         entered = slider(look, "amount", bone.stiffness, AMOUNTS, text="%.1f ×", hint=hint)
         if entered is not None:
-            actions.append(do(stiffness_editing.set_bone_stiffness, bone.ends, entered.value))
+            stiffen = stiffness_commands.set_bone_stiffness
+            actions.append(do(editing.edit_layer, stiffen, bone.ends, entered.value))
         small_text(look, _describe_limits(layer, bone.stiffness))
         imgui.pop_id()
     return actions

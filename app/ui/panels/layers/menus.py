@@ -4,8 +4,17 @@ from collections.abc import Sequence
 
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
-from app.document import Group, Layer, SwitchGroup, TreeRow, subgroups_with_layers
+from app.document import (
+    Group,
+    Layer,
+    SwitchGroup,
+    TreeRow,
+    group_commands,
+    subgroups_with_layers,
+    switch_group_commands,
+)
 from app.editor import Action, Project, do
+from app.editor.actions import editing
 from app.editor.layering import layer_list
 from app.editor.layering.layer_list import (
     duplicate_layer,
@@ -15,16 +24,13 @@ from app.editor.layering.layer_list import (
     toggle_layers_hidden,
     toggle_layers_locked,
     toggle_reference,
-    ungroup_layers,
 )
 from app.editor.layering.layer_selection import select_layers, solo_layers
 from app.editor.layering.parenting import delete_layers
 from app.editor.layering.pictures import ask_replacement_picture, make_posable, make_still
 from app.editor.layering.switches import (
     create_switch,
-    delete_switch,
     key_switch,
-    remove_from_switch,
 )
 from app.texts import _, ngettext
 from app.ui.shortcuts.keys import shown_keys
@@ -108,7 +114,9 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     if project.document.switch_group_of(identity) and item(
         _("Remove from switch"), icons.ICON_FA_XMARK
     ):
-        actions.append(do(remove_from_switch, identity))
+        actions.append(
+            do(editing.edit_document, switch_group_commands.remove_from_switch_group(identity))
+        )
     imgui.separator()
     left = len(project.document.layers) > len(whom)
     text = ngettext("Delete", "Delete {count} layers", count).format(count=count)
@@ -139,7 +147,9 @@ def _draw_switch_items(project: Project, switch_group: SwitchGroup) -> list[Acti
     ]
     imgui.separator()
     if item(_("Delete switch"), icons.ICON_FA_XMARK):
-        actions.append(do(delete_switch, switch_group.name))
+        actions.append(
+            do(editing.edit_document, switch_group_commands.delete_switch_group(switch_group.name))
+        )
     return actions
 
 
@@ -166,5 +176,5 @@ def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
         draw_tooltip(explain_unswitchable_groups(whole))
     imgui.separator()
     if item(_("Ungroup"), icons.ICON_FA_FOLDER_MINUS):
-        actions.append(do(ungroup_layers, group.name))
+        actions.append(do(editing.edit_document, group_commands.ungroup_layers(group.name)))
     return actions

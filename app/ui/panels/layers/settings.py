@@ -14,15 +14,16 @@ from app.document import (
     Group,
     Layer,
     SwitchGroup,
+    group_commands,
     is_visible,
+    layer_commands,
+    switch_group_commands,
     with_repeats,
 )
 from app.editor import Action, Project, do
+from app.editor.actions import editing
 from app.editor.layering.layer_list import (
     rename_layer,
-    set_blend_mode,
-    set_group_blend_mode,
-    set_group_opacity,
     toggle_clipping,
     toggle_group_hidden,
     toggle_reference,
@@ -37,7 +38,7 @@ from app.editor.layering.parenting import (
     set_inherits_rotation,
 )
 from app.editor.layering.pictures import make_posable, make_still
-from app.editor.layering.switches import key_switch, remove_from_switch
+from app.editor.layering.switches import key_switch
 from app.texts import _
 from app.ui.panels.key_diamond import diamond_room, draw_key_diamond
 from app.ui.panels.layers.channels import (
@@ -75,7 +76,8 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     actions += draw_effect_channels(project.document, look, layer, frame)
     label(look, _("Blend"))
     actions += [
-        do(set_blend_mode, identity, blend) for blend in _choose_blend(layer.blend, BLEND_SECTIONS)
+        do(editing.edit_document, layer_commands.set_blend(identity, blend))
+        for blend in _choose_blend(layer.blend, BLEND_SECTIONS)
     ]
     changed = imgui.checkbox(_("Clipped"), layer.clipped)[0]
     draw_tooltip(_("Visible only over the layer below it in its group"))
@@ -124,11 +126,13 @@ def _group(look: Look, group: Group) -> list[Action]:
     hint = _("Opacity of the whole group {name}").format(name=group.name)
     faded = slider(look, "opacity", 100 * group.opacity, PERCENT, text="%.0f %%", hint=hint)
     if faded is not None:
-        actions.append(do(set_group_opacity, group.name, min(max(faded.value / 100, 0.0), 1.0)))
+        opacity = min(max(faded.value / 100, 0.0), 1.0)
+        fade = group_commands.set_group_opacity(group.name, opacity)
+        actions.append(do(editing.edit_document, fade))
     text = _("Blend of {name}").format(name=name)
     label(look, shorten_text(text, (LABEL_WIDTH - 0.5) * look.em))
     actions += [
-        do(set_group_blend_mode, group.name, blend)
+        do(editing.edit_document, group_commands.set_group_blend(group.name, blend))
         for blend in _choose_blend(group.blend, GROUP_BLEND_SECTIONS)
     ]
     if imgui.checkbox(
@@ -177,7 +181,9 @@ def _draw_switch_keys(
     if text_button(
         _("Remove from switch"), FILL, _("The layer keeps its visibility, with keys of its own")
     ):
-        actions.append(do(remove_from_switch, layer.id))
+        actions.append(
+            do(editing.edit_document, switch_group_commands.remove_from_switch_group(layer.id))
+        )
     return actions
 
 

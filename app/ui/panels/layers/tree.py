@@ -4,16 +4,23 @@ from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Document, Layer, TreeRow, is_visible, parent_label, with_repeats
+from app.document import (
+    Document,
+    Layer,
+    TreeRow,
+    group_commands,
+    is_visible,
+    layer_commands,
+    parent_label,
+    with_repeats,
+)
 from app.editor import Action, Project, Session, do
-from app.editor.actions import playback
+from app.editor.actions import editing, playback
 from app.editor.layering.layer_list import (
     ask_layer_name,
     duplicate_layer,
     group_layers,
-    move_layer,
     note_listed_layer,
-    rename_group,
     rename_layer,
 )
 from app.editor.layering.layer_selection import (
@@ -91,7 +98,9 @@ def _bar(look: Look, project: Project) -> list[Action]:
             actions.append(action)
         imgui.same_line()
 
-    forward, back = (do(move_layer, active, index + by) for by in (1, -1))
+    forward, back = (
+        do(editing.edit_document, layer_commands.move_layer(active, index + by)) for by in (1, -1)
+    )
     count = len(chosen)
     replace = _("Replace the layer's picture with another file. Handles, keys and parents stay.")
     delete = (
@@ -245,5 +254,8 @@ def _naming(
     if row.switch_group is not None:
         return [*actions, do(rename_switch, row.switch_group.name, name)]
     if row.group is not None:
-        return [*actions, do(rename_group, row.group.name, name)]
+        return [
+            *actions,
+            do(editing.edit_document, group_commands.rename_group(row.group.name, name)),
+        ]
     return actions

@@ -4,9 +4,9 @@ from itertools import zip_longest
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import MARKER, Channel, Marker
+from app.document import MARKER, Channel, Marker, scene_commands
 from app.editor import Action, do
-from app.editor.actions import playback
+from app.editor.actions import editing, playback
 from app.editor.actions.timing import keys, timeline_drag
 from app.texts import _
 from app.ui.shortcuts.widgets import draw_action_item
@@ -58,7 +58,9 @@ def draw_markers(bands: TimelineLayout) -> list[Action]:
         actions += _menu(bands, marker)
         entered = name_popup(bands.look, f"name of marker {marker.frame}", marker.name)
         if entered is not None:
-            actions.append(do(keys.rename_marker, marker.frame, entered))
+            actions.append(
+                do(editing.edit_document, scene_commands.rename_marker(marker.frame, entered))
+            )
     draw_list.pop_clip_rect()
     return actions
 

@@ -5,6 +5,7 @@ from animations import moving_document
 from invariants import check_pose
 from sessions import go, session_of, settle
 
+from app.document import pose_commands
 from app.document.commands import handle_commands
 from app.document.commands.layers import layer_commands
 from app.editor.actions import editing
@@ -77,7 +78,7 @@ def test_without_auto_key_a_blend_waits_to_be_inserted(session):
 def test_names_are_not_given_twice(session):
     one, other = keep(session, 0), keep(session, 6)
     assert (one.name, other.name) == ("Pose 1", "Pose 2")
-    library.delete_library_pose(session, "Pose 1")
+    editing.edit_layer(session, pose_commands.delete_pose, "Pose 1")
     assert keep(session, 0).name == "Pose 3"
 
 
