@@ -40,8 +40,8 @@ class DisplayedFrame:
     vertices: Vertices  # of the mesh
     handles: MeshPoints  # the layer's handles, located in the mesh
     # Displayed until the in-between is computed: one of its two keys, another of their in-betweens,
-    # or the last frame of another domain.
-    placeholder: Pose | SingleFrame | MeshedDomain | None = None
+    # or the same frame of an earlier clip or of another domain.
+    placeholder: Pose | SingleFrame | Clip | MeshedDomain | None = None
     correction: SecondaryCorrection | None = None  # of tracks and springs
     is_approximate: bool = False  # whether the correction is that of an earlier clip
     # Rigid motion from the layer to the scene. All other fields are in the layer's space.
@@ -95,9 +95,9 @@ def show(
 ) -> DisplayedFrame:
     """Return the best available frame; the earlier object itself without a change.
 
-    Until an in-between is computed, the nearest in time of its two keys and of their known
-    in-betweens replaces it. Any replacement is exact for its own time. After a change of the
-    domain, the last frame stays until there is a mesh.
+    Until an in-between is computed, the same frame before the last change replaces it, or else the
+    nearest in time of its two keys and of their known in-betweens. Any replacement is exact for its
+    own time. After a change of the domain, the last frame stays until there is a mesh.
 
     A given `pose` is displayed in place of the layer's own, with the clip's corrections. `stores`
     has at least one cache, the preferred first.
@@ -113,7 +113,9 @@ def show(
     is_key = pose is None
     pose = pose or keyed_pose_at(clip, moment)
     fitting = [store for store in stores if store.mesh.source is domain]
-    exact = [store for store in fitting if pose is not None or store.is_exact(clip, frame)]
+    # A correction needs a sampler, also at a key.
+    needs_nothing = pose is not None and (correction is None or not is_key)
+    exact = [store for store in fitting if needs_nothing or store.is_exact(clip, frame)]
     if not exact and earlier is not None and (not fitting or earlier.mesh.source is not domain):
         old = earlier.mesh.source
         return earlier if earlier.placeholder is old else replace(earlier, placeholder=old)
@@ -121,6 +123,8 @@ def show(
         raise ValueError("none of the stores is of the layer's domain")
     store = (*exact, fitting[-1])[0]
     mesh, near = store.mesh, None if exact else store.nearest_pose(clip, moment)
+    if near is not None and earlier is not None and _is_earlier_state(earlier, frame, store, clip):
+        return _kept(earlier, clip)
     triangles = mesh.order.triangles(clip, frame)
     if (
         earlier is not None
@@ -131,12 +135,9 @@ def show(
         and earlier.vertices.triangles is triangles
     ):
         return earlier if earlier.frame == frame else replace(earlier, frame=frame)
-    vertices = None
-    if is_key and near is None and not is_rough:
-        vertices = store.vertices(clip, frame, None, correction)
-    if vertices is None:
-        is_rough = is_rough or (correction is not None and near is None)
-        vertices = store.vertices(clip, frame, near or pose, None if near else correction)
+    # A rough correction displaces the pose as it displaced the earlier one.
+    instead = near or (None if is_key and not is_rough else pose)
+    vertices = store.vertices(clip, frame, instead, None if near else correction)
     if vertices is None:
         raise ValueError("what is exact has vertices")
     return DisplayedFrame(
@@ -150,6 +151,22 @@ def show(
         correction=correction,
         is_approximate=is_rough,
     )
+
+
+def _is_earlier_state(
+    earlier: DisplayedFrame, frame: int, store: InbetweenCache, clip: Clip
+) -> bool:
+    """Return whether the last displayed frame is this frame before a change of the clip."""
+    is_exact = earlier.placeholder is None or isinstance(earlier.placeholder, Clip)
+    return is_exact and earlier.frame == frame and not store.has_failed(clip)
+
+
+def _kept(earlier: DisplayedFrame, clip: Clip) -> DisplayedFrame:
+    """Return the frame of an earlier clip as a placeholder, with the present handles."""
+    if earlier.clip is clip:
+        return earlier
+    handles, was = _locate(clip, earlier.mesh, earlier), earlier.placeholder
+    return replace(earlier, clip=clip, handles=handles, placeholder=was or earlier.clip)
 
 
 def place_displayed_frames(

@@ -25,6 +25,7 @@ from engine.interpolation.one_segment import (
     frame_at as frame_at,
     prepare_inbetweens as prepare_inbetweens,
     solve_pins as solve_pins,
+    solve_pins_at as solve_pins_at,
     value_points_for_corrections as value_points_for_corrections,
 )
 from engine.interpolation.preparation import (

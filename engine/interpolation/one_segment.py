@@ -12,6 +12,7 @@ from engine.interpolation.added.pins.pinning import (
     CorrectionBase,
     CorrectionSeries,
     fit_pin_corrections,
+    solve_pin_correction,
 )
 from engine.interpolation.added.pins.targets import SegmentPins
 from engine.interpolation.blends.blend import Blend
@@ -85,6 +86,29 @@ def solve_pins(
     `base` is as in `evaluate_base`, without pins. The samples keep `bounds` as far as `base` does.
     """
     return fit_pin_corrections(corrector, partial(evaluate_base, base, corrector), pins, bounds)
+
+
+def solve_pins_at(
+    time: float,
+    variant: Variant,
+    interval: KeyframeSegment,
+    corrector: PointCorrector,
+    pins: SegmentPins,
+    bounds: Bounds,
+) -> CorrectionSeries:
+    """Find the correction at a single time, where the segment has no holes.
+
+    `interval` is sampled at the handles, with values at `value_points_for_corrections`. For the
+    metric variant this costs a fraction of `solve_pins`. Elsewhere the correction is not valid.
+    """
+
+    def base_at(at: float) -> CorrectionBase:
+        # All variants are the same at the keyframes.
+        is_end = at in (0.0, 1.0)
+        blend = BLENDS[Variant.ETA if is_end else variant].at_single_time(at, interval)
+        return evaluate_base(_closed(blend, interval.sampled_domain), corrector, at)
+
+    return solve_pin_correction(corrector, base_at, pins, bounds, time)
 
 
 def _closed(blend: Blend, sites: SampledDomain) -> Inbetweens:

@@ -23,6 +23,7 @@ from engine.interpolation import (
     Inbetweens,
     SegmentPins,
     solve_pins,
+    solve_pins_at,
 )
 
 BESIDE = 0.03  # fraction of the diameter: closer to the anchor or a pinned handle, handles yield
@@ -59,7 +60,22 @@ class AutoPins:
     def frame(self, number: int, sampler: PoseSampler, time: float) -> Frame:
         """Return a single in-between, for a variant that makes single frames."""
         segment, bounds = pose_segments(self.clip)[number], self.clip.layer.bounds
-        return sampler.frame_of(segment, bounds, self._variant, time, self.series(number))
+        pins = self._correction_at(number, time)
+        return sampler.frame_of(segment, bounds, self._variant, time, pins)
+
+    def _correction_at(self, number: int, time: float) -> CorrectionSeries | None:
+        """Return the correction of a segment at a time; None without pins."""
+        segment = self._segments[number]
+        if segment is None:
+            return None
+        key = segment_key(self.clip, number, self._variant)
+        known = self._known.known.find_pins(key)
+        if known is not None:
+            return known
+        corrector, sampler = self.prepare()
+        pins, bounds = self._pins(number, segment, sampler), self.clip.layer.bounds
+        interval = sampler.segment_of(pose_segments(self.clip)[number], bounds, self._variant)
+        return solve_pins_at(time, self._variant, interval, corrector, pins, bounds)
 
     def series(self, number: int) -> CorrectionSeries | None:
         """Return the corrections of a segment; None without pins."""

@@ -108,6 +108,12 @@ class OutlineCache:
         # With the poses whose ids are in the keys.
         self._pins: dict[SegmentKey, tuple[CorrectionSeries, tuple[Pose, ...]]] = {}
 
+    def find_pins(self, pair: SegmentKey) -> CorrectionSeries | None:
+        """Return the pins of a segment; None if they are not known."""
+        with self.guard:
+            known = self._pins.get(pair)
+        return None if known is None else known[0]
+
     def pins_of(
         self, pair: SegmentKey, poses: tuple[Pose, ...], solve: Callable[[], CorrectionSeries]
     ) -> CorrectionSeries:
@@ -269,7 +275,7 @@ class PoseSampler:
 
     def inbetweens_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a segment; motion through smooth keys keeps the limits."""
-        return self._prepared(self._engine_interval(segment, bounds, variant), variant)
+        return self._prepared(self.segment_of(segment, bounds, variant), variant)
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Return whether a single in-between takes less time than the whole segment."""
@@ -284,7 +290,7 @@ class PoseSampler:
         pins: CorrectionSeries | None = None,
     ) -> Frame:
         """Return the in-between at the time `weight`, with pins; needs `makes_single_frames`."""
-        return frame_at(weight, variant, self._engine_interval(segment, bounds, variant), pins)
+        return frame_at(weight, variant, self.segment_of(segment, bounds, variant), pins)
 
     def velocity_shares(
         self, segment: PoseSegment, bounds: Bounds, variant: Variant
@@ -320,9 +326,8 @@ class PoseSampler:
                 self.known.tangents[key] = found
         return found
 
-    def _engine_interval(
-        self, segment: PoseSegment, bounds: Bounds, variant: Variant
-    ) -> KeyframeSegment:
+    def segment_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> KeyframeSegment:
+        """Return a segment as the engine needs it, sampled here."""
         samples = [self.samples(key.pose) for key in segment.keys]
         anchors = np.array([sample.anchor_fz for sample in samples])
         if not segment.has_smooth_tangent:

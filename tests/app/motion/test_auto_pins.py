@@ -16,9 +16,10 @@ from app.document import (
     clip_of,
     pinned_handles,
 )
-from app.motion import Animation, ParentTransforms
+from app.motion import Animation, DeformMesh, InbetweenCache, ParentTransforms
 from app.motion.inbetweens import pose_sampler
 from app.motion.inbetweens.content_cache import ContentCache
+from app.motion.inbetweens.segment_keys import segment_key
 from engine.interpolation import BLENDS
 
 
@@ -227,3 +228,18 @@ def test_attached_layer_is_corrected_about_its_joint_alone():
     assert_allclose(ends[0], ends[1], atol=0.6)
     for frame in (2.0, 5.0, 8.0):
         assert np.abs(animation.positions(frame)[:3] - ends[0]).max() < 0.6
+
+
+def test_single_frame_has_the_pins_of_its_segment():
+    document = posed(variant="metric")
+    clip = clip_of(document, 0)
+    store = InbetweenCache(mesh=DeformMesh.coarse(clip.layer.domain))
+    store.add(store.segments_job(clip, [1])())
+    frame = clip.keys[0].frame + 4
+    update = store.frame_job(clip, frame)()
+    (single,) = [each.single_frame for each in update.segments.values()]
+    assert store.sampler.known.find_pins(segment_key(clip, 0)) is None, "no series was solved"
+    store.add(store.segments_job(clip, [0])())
+    whole = store.segment(clip, 0).inbetweens
+    assert np.abs(whole.frame(single.weight).positions - single.positions).max() < 0.02
+    assert whole.corrections

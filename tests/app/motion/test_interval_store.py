@@ -446,7 +446,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
         start=None,
         before=None,
         is_keyed=True,
-        easing=session.preferences.easing,
+        easing=session.settings.preferences.easing,
     )
     project.pending.append(drag)
     assert not list(due_jobs(session, project))

@@ -35,6 +35,32 @@ def test_the_nearer_key_stands_in_until_the_in_between_is_prepared():
         assert show(clip, frame, None, [store], shown) is shown
 
 
+def test_the_frame_before_a_change_stays_until_the_new_one_is_known():
+    document = disc_document()
+    layer = document.layers[0]
+    first = layer.keys[0].pose
+    turned, bent = (
+        replace(first, phi=CENTRE + (first.phi - CENTRE) * np.exp(angle)) for angle in (0.8j, 0.9j)
+    )
+    was, clip = (
+        clip_of(key_commands.insert_key(layer.id, 24, pose)(document), layer.id)
+        for pose in (turned, bent)
+    )
+    store = InbetweenCache(mesh=DeformMesh.coarse(layer.domain))
+    store.add(store.segments_job(was, [0])())
+    earlier = show(was, 12, None, [store], None)
+    kept = show(clip, 12, None, [store], earlier)
+    assert kept.vertices is earlier.vertices
+    assert kept.clip is clip
+    assert not kept.is_current
+    assert show(clip, 12, None, [store], kept) is kept
+    # At another frame it would be wrong, and so it is where the new one cannot be made.
+    assert show(clip, 13, None, [store], kept).placeholder is bent
+    store.set_needed_clips([clip], [], 12)
+    store.mark_failed("in-betweens", clip)
+    assert show(clip, 12, None, [store], kept).placeholder in (first, bent)
+
+
 def test_one_exact_in_between_stands_in_for_others_nearby():
     document = disc_document()
     layer = document.layers[0]

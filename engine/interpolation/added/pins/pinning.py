@@ -89,8 +89,7 @@ def fit_pin_corrections(
     known, size = corrector.variables, corrector.boundary.size
     solved: dict[float, PointSolution] = {}
     share = 1.0
-    ends = [extremes(corrector, base_at(time).samples) for time in (0.0, 1.0)]
-    limits = frame_limits(bounds, *ends)
+    limits = _limits(corrector, base_at, bounds)
 
     def at(time: float) -> Floats:
         nonlocal share
@@ -118,3 +117,30 @@ def fit_pin_corrections(
         shifts=freeze(size * (forms[-2] + 1j * forms[-1])),
         share=share,
     )
+
+
+def solve_pin_correction(
+    corrector: PointCorrector,
+    base_at: Callable[[float], CorrectionBase],
+    pins: SegmentPins,
+    bounds: Bounds,
+    time: float,
+) -> CorrectionSeries:
+    """Find the correction at a single time, which costs a fraction of the whole segment's.
+
+    The share is that of this time alone. It differs from the segment's where the segment reaches
+    its limits.
+    """
+    limits, base = _limits(corrector, base_at, bounds), base_at(time)
+    targets = pins.targets(time, base.places, base.anchor)
+    found = solve_correction(corrector, base.nodes, targets, throw=False)
+    share = max_feasible_share(corrector, base.samples, found.x, limits)
+    return CorrectionSeries.of_frame(corrector, share * found.x, share * found.shift)
+
+
+def _limits(
+    corrector: PointCorrector, base_at: Callable[[float], CorrectionBase], bounds: Bounds
+) -> Floats:
+    """Return the limits of a segment: the bounds, widened by the extremes of the keyframes."""
+    ends = [extremes(corrector, base_at(time).samples) for time in (0.0, 1.0)]
+    return frame_limits(bounds, *ends)
