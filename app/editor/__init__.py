@@ -34,16 +34,20 @@ from app.editor.parts.timeline import (
     TimeGesture as TimeGesture,
     TimeRangeView as TimeRangeView,
 )
+from app.editor.parts.tools import (
+    CutTool as CutTool,
+    Hint as Hint,
+    StiffnessTool as StiffnessTool,
+)
+from app.editor.parts.viewport_state import (
+    CurveKind as CurveKind,
+    HeatMap as HeatMap,
+    Overlays as Overlays,
+    Tint as Tint,
+)
 from app.editor.project import Project as Project
 from app.editor.session import (
-    CurveKind as CurveKind,
-    CutTool as CutTool,
-    HeatMap as HeatMap,
-    Hint as Hint,
-    MaterialTool as MaterialTool,
-    Overlays as Overlays,
     Session as Session,
-    Tint as Tint,
     TutorialStage as TutorialStage,
     TutorialState as TutorialState,
     with_project as with_project,

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from math import inf
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,6 @@ from app.document import (
     CAMERA,
     MARKER,
     SWITCH,
-    TRACK,
     TRANSFORM,
     Baseline,
     Channel,
@@ -19,11 +17,9 @@ from app.document import (
     Document,
     History,
     Keyframe,
-    KeysByChannel,
     Layer,
     Meshing,
     PictureFile,
-    Playhead,
     Pose,
     PreviewPose,
     TreeRow,
@@ -32,18 +28,20 @@ from app.document import (
     channels_of,
     clip_of,
     keys_in,
-    layer_tree,
     pose_channel,
     track_in,
     transform_at,
 )
 from app.editor.parts.export_state import ExportDestinations
+from app.editor.parts.layer_list import LayerListState
 from app.editor.parts.project_file import ProjectFile
+from app.editor.parts.selection import Selection
 from app.editor.parts.timeline import TimelineState
+from app.editor.parts.viewport_state import ViewportState, fit_view_around
 from app.editor.work.derived import Derived
 from app.editor.work.drag_session import DragSession, StoppedDrag
 from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime
-from app.editor.work.motion_setup import MotionJob, MotionSetup
+from app.editor.work.motion_setup import MotionJob
 from app.editor.work.pending_change import DeferredAction, PendingChange
 from app.editor.work.revised import Revised
 from app.editor.work.track_drag import Recording, TrackDrag
@@ -54,7 +52,7 @@ from app.motion import (
     PoseSampler,
     parenting_key,
 )
-from app.render import View, fit_view
+from app.render import View
 from app.reports import Curves
 from app.solving import KeyResolver
 from app.storage import Picture
@@ -64,7 +62,6 @@ from engine.maps import Bounds
 EXTENTS = 32  # extents of the motion that are remembered for undo and redo
 # Most bytes of intermediate values that inactive layers keep, once they have series.
 MOST_RELEASABLE_BYTES = 64 * 2**20
-FIT_MARGIN = 0.08  # of the viewport: margin around a fitted box
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -99,13 +96,14 @@ class Project(Revised):
 
     history: History
     file: ProjectFile
-    is_import_log_open: bool = False  # in the panel of layers
+    selection: Selection
+    layer_list: LayerListState = field(default_factory=LayerListState)
+    viewport: ViewportState = field(default_factory=ViewportState)
     exports: ExportDestinations = field(default_factory=ExportDestinations)
 
     layer_runtimes: dict[int, LayerRuntime]  # by layer id
     # Decoded pictures, also of layers that undo may bring back.
     pictures: dict[PictureFile, Picture] = field(default_factory=dict)
-    active: int  # id of the active layer
     pending: list[PendingChange] = field(default_factory=list)  # pending changes of the document
     # The inputs of the last poll for due jobs.
     polled: tuple[object, ...] = ()
@@ -115,9 +113,6 @@ class Project(Revised):
     # The gesture of a held drag that another change of the document ended; it changes no more.
     ended_gesture: object = None
     stopped_drag: StoppedDrag | None = None  # to be shown in a notice
-    # Commands of one gesture, a single use of a widget, are one undo step.
-    gesture: object | None = None
-    used_widget: int = 0
 
     # Distortion over time, of the active layer and of the compared method.
     curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
@@ -141,34 +136,11 @@ class Project(Revised):
     unbuildable: Layer | None = None  # a layer whose cut-out gives no domain
     brush: float | None = None  # radius in pixels of the picture; None before it is set
 
-    playhead: Playhead = field(default_factory=Playhead)
-    moved_at: float = -inf  # the clock's seconds when the playhead last moved
     timeline: TimelineState = field(default_factory=TimelineState)
-    selected_handles: frozenset[int] = frozenset()  # ids
-    # Channels without selected keys are left out.
-    selected_keys: KeysByChannel = field(default_factory=dict)
-    selected_channel: Channel[Any] | None = None  # `channel` is by default the poses
-    motion_setup: MotionSetup | None = None  # the draft of a motion
-    last_motion_setup: MotionSetup | None = None  # the last closed or applied draft
     recording: Recording | None = None  # until accepted or discarded
-    camera: View | None = None  # None fits the picture into the viewport
-    is_camera_view: bool = False  # whether the viewport shows the camera's view
-    awaits_extent: bool = False  # whether the view fits the motion once it is measured
     last_flip: LastFlip | None = None
     blend_preview: BlendPreview | None = None
     picked_pose: tuple[int, str] | None = None  # layer id, and name in its library
-    # Ids of selected layers other than the active one, and of soloed layers.
-    other_selected_layers: frozenset[int] = frozenset()
-    solo: frozenset[int] = frozenset()
-    toggled_rows: frozenset[str] = frozenset()  # layer tree rows opened or closed by hand
-    dismissed_suggestions: frozenset[str] = frozenset()  # groups without a switch suggestion
-    # Formerly active layers whose rows stay until the pointer is over the drawing again.
-    lingering: frozenset[int] = frozenset()
-    last_listed_layer: int | None = None  # the layer to which the list was scrolled
-    # Rows of the layer list, by document, toggled rows, and ids whose rows stay.
-    tree_rows: Derived[tuple[Document, frozenset[str], frozenset[int]], tuple[TreeRow, ...]] = (
-        field(default_factory=lambda: Derived(()))
-    )
 
     @property
     def document(self) -> Document:
@@ -178,20 +150,17 @@ class Project(Revised):
 
     @property
     def layer(self) -> Layer:
-        return self.document.layer(self.active)
+        return self.document.layer(self.selection.active)
 
     @property
     def tree(self) -> tuple[TreeRow, ...]:
         """Rows of the layer list, the front layer on top."""
-        source = self.document, self.toggled_rows, self.lingering | {self.active}
-        if not self.tree_rows.follows(source):
-            self.tree_rows.set(source, layer_tree(*source))
-        return self.tree_rows.value
+        return self.layer_list.rows(self.document, self.selection.active)
 
     @property
     def selected_layers(self) -> tuple[int, ...]:
         """Ids of the selected layers from front to back, with the active layer."""
-        chosen = self.other_selected_layers | {self.active}
+        chosen = self.selection.other_layers | {self.selection.active}
         return tuple(each.id for each in reversed(self.document.layers) if each.id in chosen)
 
     @property
@@ -214,60 +183,31 @@ class Project(Revised):
         return [*channels_of(layer)]
 
     @property
-    def selected_frames(self) -> frozenset[int]:
-        """Frames of the selected pose keys of the active layer.
-
-        Setting it deselects all other keys.
-        """
-        return self.selected_keys.get(pose_channel(self.active), frozenset())
-
-    @selected_frames.setter
-    def selected_frames(self, frames: frozenset[int]) -> None:
-        self.selected_keys = {pose_channel(self.active): frames} if frames else {}
-
-    @property
     def channel(self) -> Channel[Any]:
         """The selected channel: of the scene or of the active layer, by default its poses."""
-        chosen = self.selected_channel
-        is_shown = chosen is not None and chosen.layer in (None, self.active)
+        chosen, active = self.selection.channel, self.selection.active
+        is_shown = chosen is not None and chosen.layer in (None, active)
         is_keyed = chosen is not None and bool(keys_in(self.document, chosen))
-        return chosen if chosen is not None and is_shown and is_keyed else pose_channel(self.active)
+        return chosen if chosen is not None and is_shown and is_keyed else pose_channel(active)
 
     @property
     def selected_track(self) -> int | None:
         """The handle id of the selected track of the active layer.
 
-        None if another channel is selected. A track that is set is selected once it has keys.
+        None if another channel is selected.
         """
         track = track_in(self.document, self.channel)
         return None if track is None else track.handles[0]
 
-    @selected_track.setter
-    def selected_track(self, handle: int | None) -> None:
-        track = None if handle is None else self.layer.track_of(handle)
-        part = handle if track is None else track.handles[0]
-        self.selected_channel = None if part is None else Channel(TRACK, self.active, part)
-
-    @property
-    def selected_key_count(self) -> int:
-        """The number of selected keys in all channels."""
-        return sum(map(len, self.selected_keys.values()))
-
-    def keys_with(self, channel: Channel[Any], frame: int) -> KeysByChannel:
-        """Return all selected keys if a key is one of them, or else only this key."""
-        if frame in self.selected_keys.get(channel, ()):
-            return self.selected_keys
-        return {channel: frozenset({frame})}
-
     @property
     def clip(self) -> Clip:
         """The active layer in the time of its scene."""
-        return clip_of(self.document, self.active)
+        return clip_of(self.document, self.selection.active)
 
     @property
     def layer_runtime(self) -> LayerRuntime:
         """The active layer's runtime."""
-        return self.layer_runtimes[self.active]
+        return self.layer_runtimes[self.selection.active]
 
     @property
     def samplers(self) -> dict[int, PoseSampler]:
@@ -297,7 +237,7 @@ class Project(Revised):
         return [
             (clip_of(self.document, layer), runtime)
             for layer, runtime in self.layer_runtimes.items()
-            if layer != self.active
+            if layer != self.selection.active
         ]
 
     @property
@@ -312,9 +252,13 @@ class Project(Revised):
     def unkeyed_pose(self) -> Pose | None:
         """The unkeyed pose of the active layer at this frame, if any."""
         unkeyed = self.preview_pose
-        if unkeyed is None or unkeyed.layer != self.active or self.playhead.since is not None:
+        if (
+            unkeyed is None
+            or unkeyed.layer != self.selection.active
+            or self.timeline.playhead.since is not None
+        ):
             return None
-        here = self.layer.source_of(self.playhead.frame)
+        here = self.layer.source_of(self.timeline.playhead.frame)
         return unkeyed.pose if unkeyed.frame == here else None
 
     @property
@@ -332,9 +276,9 @@ class Project(Revised):
     def visible_drag(self) -> DragSession | None:
         """The unfinished drag if its pose is the active layer's at the playhead."""
         drag = self.drag
-        if drag is None or self.playhead.since is not None:
+        if drag is None or self.timeline.playhead.since is not None:
             return None
-        here = (self.active, self.layer.source_of(self.playhead.frame))
+        here = (self.selection.active, self.layer.source_of(self.timeline.playhead.frame))
         return drag if (drag.layer, drag.frame) == here else None
 
     @property
@@ -363,7 +307,7 @@ class Project(Revised):
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
         """Return the active layer's placements at some frames; `unknown` while they are unknown."""
         frames = list(frames)
-        return self.placed_at(self.active, frames) or [unknown for _ in frames]
+        return self.placed_at(self.selection.active, frames) or [unknown for _ in frames]
 
     def placed_at(self, layer: int, frames: Sequence[int]) -> list[RigidMotion] | None:
         """Return a layer's placements at some frames; None while they are unknown.
@@ -412,17 +356,15 @@ class Project(Revised):
                 )
             runtime.comparison = comparison
 
-    def view(self, screen: tuple[int, int]) -> View:
+    def view_on(self, screen: tuple[int, int]) -> View:
         """Return the viewport's view on a screen of this size in pixels."""
         whole = fit_view_around(BoundingBox(0j, complex(*self.document.canvas)), screen)
         shown = self.layer_runtime.shown
-        shot = camera_at(self.document, self.playhead.frame if shown is None else shown.frame)
-        if self.is_camera_view and shot is not None:
+        shot = camera_at(
+            self.document, self.timeline.playhead.frame if shown is None else shown.frame
+        )
+        if self.viewport.is_camera_view and shot is not None:
             turn = complex(np.exp(1j * shot.turn))
             return replace(whole, centre=shot.centre, scale=whole.scale * shot.zoom, turn=turn)
-        return whole if self.camera is None else replace(self.camera, size=screen)
-
-
-def fit_view_around(box: BoundingBox, screen: tuple[int, int]) -> View:
-    """Return the view of a box with a margin, on a screen of this size in pixels."""
-    return fit_view(*box, screen, margin=FIT_MARGIN * min(screen))
+        view = self.viewport.view
+        return whole if view is None else replace(view, size=screen)

@@ -26,6 +26,7 @@ from app.document.commands import scene_commands
 from app.document.settings import Marker
 from app.editor.actions.project_files import autosaving
 from app.editor.parts.project_file import ProjectFile
+from app.editor.parts.selection import Selection
 from app.editor.parts.settings import SessionSettings
 from app.editor.project import Project
 from app.editor.session import Session
@@ -198,7 +199,7 @@ def _edit_on(tell: Callable[[int, float], None], folder: Path, document: Documen
         file=ProjectFile(name="a"),
         history=History(document, saved=True),
         layer_runtimes={},
-        active=document.layers[-1].id,
+        selection=Selection(active=document.layers[-1].id),
     )
     number = 0
     session.project.history.do(scene_commands.add_marker(0, "0"))

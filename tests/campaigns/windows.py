@@ -56,15 +56,16 @@ def name(session, number):
     history.do(rename(0, f"{number}") if renames else add(0, f"{number}"))
 
 def close(session):
-    session.dialog = None
+    session.dialogs.current = None
 
 class Driven(window_process.Window):
     def __init__(self, *arguments):
         super().__init__(*arguments)
         threading.Thread(target=self.drive, daemon=True).start()
     def drive(self):
-        self.until(lambda: self.session.project or isinstance(self.session.dialog, Question))
-        print("opened" if self.session.project else self.session.dialog.title, flush=True)
+        dialogs = self.session.dialogs
+        self.until(lambda: self.session.project or isinstance(dialogs.current, Question))
+        print("opened" if self.session.project else dialogs.current.title, flush=True)
         for line in sys.stdin:
             word, number = line.split()
             getattr(self, word)(int(number))
@@ -75,7 +76,7 @@ class Driven(window_process.Window):
         self.queue_action(do(*action))
         self.wake()
     def anyway(self, _):
-        self.queue_action(self.session.dialog.answers[1][1])
+        self.queue_action(self.session.dialogs.current.answers[1][1])
         self.let(close)
         self.until(lambda: self.session.project)
         print("opened", flush=True)
@@ -87,11 +88,11 @@ class Driven(window_process.Window):
     def save(self, number):
         self.let(saving.write_project, asked, None)
         history, session = self.session.project.history, self.session
-        self.until(lambda: history.is_saved or isinstance(session.dialog, Question))
-        print("saved" if history.is_saved else session.dialog.title, number, flush=True)
+        self.until(lambda: history.is_saved or isinstance(session.dialogs.current, Question))
+        print("saved" if history.is_saved else session.dialogs.current.title, number, flush=True)
         if not history.is_saved:
             self.let(close)
-            self.until(lambda: session.dialog is None)
+            self.until(lambda: session.dialogs.current is None)
     def work(self, saves):
         for number in range(1_000_000):
             self.edit(number)

@@ -224,7 +224,7 @@ def _camera(window: Film, path: Path) -> None:
     window.act(key_camera)
     window.act(playback.seek, 48)
     window.settle()
-    whole = project_of(window).view(window.session.screen)
+    whole = project_of(window).view_on(window.session.display.screen)
     window.act(viewing.set_view, replace(whole, centre=HEAD, scale=1.9 * whole.scale))
     window.act(key_camera)
     window.settle()

@@ -81,13 +81,15 @@ def bend_bar(
         bar = window.again(bend_bar, None, held)
         if last != BENT:
             bar.history.do(
-                channel_commands.move_keys({pose_channel(bar.active): {BENT}}, last - BENT)
+                channel_commands.move_keys(
+                    {pose_channel(bar.selection.active): {BENT}}, last - BENT
+                )
             )
         bar.history.do(scene_commands.set_frames(FrameRange(0, last)))
         playback.seek(window.session, last)
     elif held == "loose":
         bar = window.again(bend_bar, None, "auto-pins")
-        bar.history.extend_step(shape_commands.set_auto_pins(bar.active, enabled=False))
+        bar.history.extend_step(shape_commands.set_auto_pins(bar.selection.active, enabled=False))
     else:
         bar = window.again(open_bar)
         playback.seek(window.session, BENT)

@@ -104,10 +104,12 @@ class Harness:
         fresh = Session(clock=self.clock, jobs=jobs, settings=SessionSettings(folder=self.folder))
         saving.set_project(self.session, None)
         for field in fields(Session):
-            if field.name not in {"screen", "full_detail", "diagnostics", "revision"}:
+            if field.name not in {"diagnostics", "display", "revision"}:
                 setattr(self.session, field.name, getattr(fresh, field.name))
         fresh.diagnostics.note_graphics(self.session.diagnostics.graphics)
-        self.session.diagnostics = fresh.diagnostics
+        fresh.display.note_speed(full_detail=self.session.display.full_detail)
+        fresh.display.resize(*self.session.display.screen)
+        self.session.diagnostics, self.session.display = fresh.diagnostics, fresh.display
         # Small meshes, and nothing that nobody looks at, so that the tests are quick.
         self.session.settings.default_meshing = Meshing(triangles=2_000, detail="coarse")
         self.session.settings.prepares_ahead = False
@@ -149,7 +151,7 @@ class Harness:
             )
         made_at, made, self.session.settings.preferences = self._made[known]
         project = own(made)
-        project.moved_at += self.clock.now - made_at
+        project.timeline.moved_at += self.clock.now - made_at
         # What was kept of it went away with the test for which it was made.
         project.file.autosaved, project.file.autosaved_at, project.file.changed_at = (
             None,
@@ -168,11 +170,11 @@ class Harness:
 
     def ring(self, project: Project) -> float:
         """Return the radius of the ring around the selected handle, in pixels of the picture."""
-        return RING * self._em / project.view(self.session.screen).scale
+        return RING * self._em / project.view_on(self.session.display.screen).scale
 
     def grip(self, project: Project) -> float:
         """Return the radius within which a handle is grabbed, in pixels of the picture."""
-        return GRIP * self._em / project.view(self.session.screen).scale
+        return GRIP * self._em / project.view_on(self.session.display.screen).scale
 
     @property
     def _em(self) -> float:

@@ -28,8 +28,8 @@ def check_invariants(session: Session) -> None:
         return
     document, layer = project.document, project.layer
     assert set(project.layer_runtimes) == {each.id for each in document.layers}
-    assert project.selected_handles <= {handle.id for handle in layer.handles}
-    for channel, frames in project.selected_keys.items():
+    assert project.selection.handles <= {handle.id for handle in layer.handles}
+    for channel, frames in project.selection.keys.items():
         assert frames
         assert frames <= frames_in(document, channel)
     assert playback.current_frame(session, project) in document.frames

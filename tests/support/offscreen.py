@@ -95,7 +95,7 @@ class Offscreen:
         if project is None:
             raise RuntimeError("there is no drawing in the window")
         corner = imgui.internal.find_window_by_name(self._panel("Viewport").label).pos
-        pixel = project.view(session.screen).to_pixels(np.array([place]))[0]
+        pixel = project.view_on(session.display.screen).to_pixels(np.array([place]))[0]
         pixel /= self._density
         return ImVec2(corner.x + pixel.real, corner.y + pixel.imag)
 

@@ -3,6 +3,7 @@
 from app.document import Document, History, clip_of
 from app.editor import LayerRuntime, Project
 from app.editor.parts.project_file import ProjectFile
+from app.editor.parts.selection import Selection
 from app.storage import Picture
 from engine.arrays import Bytes
 
@@ -17,5 +18,5 @@ def project_of(document: Document, pixels: Bytes, name: str) -> Project:
         file=ProjectFile(name=name),
         history=History(document, saved=True),
         layer_runtimes=puppets,
-        active=document.layers[0].id,
+        selection=Selection(active=document.layers[0].id),
     )

@@ -214,30 +214,30 @@ def _given(rng: np.random.Generator, handles: list[int], first: int, last: int) 
 def random_state(rng: np.random.Generator, session: Session, project: Project) -> None:
     """Let things be chosen, in hand and under the playhead at random."""
     document = project.document
-    project.active = _any(rng, document.layers).id
+    project.selection.active = _any(rng, document.layers).id
     layer = project.layer
-    project.other_selected_layers = frozenset(
+    project.selection.other_layers = frozenset(
         each.id for each in document.layers if rng.random() < 0.3
     )
-    project.selected_handles = frozenset(
+    project.selection.handles = frozenset(
         handle.id for handle in layer.handles if rng.random() < 0.5
     )
     for channel, keyed in all_keys(document).items():
         frames = frozenset(frame for frame in sorted(keyed) if rng.random() < 0.4)
         if frames and rng.random() < 0.6:
-            project.selected_keys[channel] = frames
+            project.selection.keys[channel] = frames
     project.timeline.expanded_layers = frozenset(
         each.id for each in document.layers if rng.random() < 0.5
     )
     if layer.tracks and rng.random() < 0.5:
         project.selected_track = _any(rng, layer.tracks).handles[0]
-    project.is_camera_view = bool(document.camera) and bool(rng.integers(2))
-    project.playhead = replace(project.playhead, frame=int(rng.integers(LAST + 1)))
-    session.is_timeline_focused = bool(rng.integers(2))
-    session.cutting = _any(rng, (None, None, None, "keep", "remove", "knife", "pick", "holes"))
-    session.material = _any(rng, (None, None, None, "stiff", "bone"))
-    session.moves = bool(rng.random() < 0.2)
-    session.records = bool(rng.random() < 0.1)
+    project.viewport.is_camera_view = bool(document.camera) and bool(rng.integers(2))
+    project.timeline.playhead = replace(
+        project.timeline.playhead, frame=int(rng.integers(LAST + 1))
+    )
+    session.display.is_timeline_focused = bool(rng.integers(2))
+    tools = ("keep", "remove", "knife", "pick", "holes", "stiff", "bone", "move", "record")
+    session.tools.mode = _any(rng, ("pose",) * 10 + tools)
 
 
 def _any(rng: np.random.Generator, options):

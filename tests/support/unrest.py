@@ -53,7 +53,7 @@ def _shown(project: Project) -> list[str]:
 
 def _plays(project: Project, shown: DisplayedFrame) -> bool:
     """Tell whether a frame only plays, so that nothing finds its corrections."""
-    return project.playhead.since is not None and shown.placeholder is None
+    return project.timeline.playhead.since is not None and shown.placeholder is None
 
 
 PARTS = ("frame", "in-betweens", "fine", "series")

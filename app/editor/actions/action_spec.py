@@ -79,4 +79,4 @@ def unless(is_possible: Callable[[Session, Project], object], sentence: str) -> 
     return lambda session, project: None if is_possible(session, project) else sentence
 
 
-UNLESS_HANDLES = unless(lambda _, project: project.selected_handles, _("Select a handle first."))
+UNLESS_HANDLES = unless(lambda _, project: project.selection.handles, _("Select a handle first."))

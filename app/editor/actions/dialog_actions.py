@@ -90,7 +90,7 @@ def show_import_notice(session: Session, project: Project, summary: ImportLog) -
     """Show a notice about effects of a drawing that its import lost."""
     if not summary.warnings:
         return
-    project.is_import_log_open = True
+    project.layer_list.show_import_log(shown=True)
     count = len(summary.warnings)
     session.notices.show(
         ngettext(
@@ -114,11 +114,11 @@ def show_import_notice(session: Session, project: Project, summary: ImportLog) -
 @with_project
 def show_import_log(session: Session, project: Project) -> None:
     """Show the import log in the panel of layers."""
-    project.is_import_log_open = True
-    session.panel_to_focus = "Layers"
+    project.layer_list.show_import_log(shown=True)
+    session.display.focus_panel("Layers")
 
 
 @with_project
 def toggle_import_log(_: Session, project: Project) -> None:
     """Show or hide the import log in the panel of layers."""
-    project.is_import_log_open = not project.is_import_log_open
+    project.layer_list.show_import_log(shown=not project.layer_list.is_import_log_open)

@@ -1,7 +1,6 @@
 """Changes of the document: commands, undo and the selection."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Concatenate, ParamSpec
 
 from app.document import (
@@ -38,10 +37,10 @@ UNDONE, REDONE = _("Undone: {step}"), _("Redone: {step}")
 
 @with_project
 def edit_document(
-    _: Session, project: Project, command: Command, *, gesture: object = None
+    session: Session, project: Project, command: Command, *, gesture: object = None
 ) -> None:
     """Run a command; commands of one gesture, by default one use of a widget, are one undo step."""
-    project.history.do(command, gesture=gesture or project.gesture)
+    project.history.do(command, gesture=gesture or session.tools.widget_gesture)
     _forget_what_is_gone(project)
 
 
@@ -55,22 +54,21 @@ def edit_layer(
     **kwargs: Arguments.kwargs,
 ) -> None:
     """Run a command on the active layer."""
-    edit_document(session, command(project.active, *args, **kwargs))
+    edit_document(session, command(project.selection.active, *args, **kwargs))
 
 
-@with_project
-def note_widget_in_use(_: Session, project: Project, widget: int) -> None:
+def note_widget_in_use(session: Session, widget: int) -> None:
     """Note the number of the widget in use, 0 for none, when another one is.
 
     Commands of one use of a widget are one undo step.
     """
-    project.used_widget = widget
-    project.gesture = object() if widget else None
+    session.tools.use_widget(widget)
 
 
-def _undo_text(_session: Session, project: Project) -> str:
+def _undo_text(session: Session, project: Project) -> str:
     step = project.history.undo_label if project.drag is None else project.drag.command.label
-    if project.motion_setup is not None and project.motion_setup.past:
+    draft = session.tools.motion_setup
+    if draft is not None and draft.past:
         step = _("Move a joint")
     elif project.motion_job is not None:
         step = _("Apply motion preset")
@@ -92,8 +90,9 @@ def undo(session: Session, project: Project) -> None:
     A pending action that was asked for last is cancelled first; so is a pending motion. While a
     motion is drafted, undo changes only its joints.
     """
-    if project.motion_setup is not None and project.motion_setup.past:
-        project.motion_setup = project.motion_setup.undone
+    draft = session.tools.motion_setup
+    if draft is not None and draft.past:
+        session.tools.select(draft.undone)
         return
     if project.motion_job is not None:
         apply_motion.cancel_motion_job(session)
@@ -163,13 +162,13 @@ def _go_to_change(
     session: Session, project: Project, before: Document, unkeyed: PreviewPose | None
 ) -> None:
     """Move a resting playhead to the nearest changed frame, unless its own frame changed."""
-    if project.playhead.since is not None:
+    if project.timeline.playhead.since is not None:
         return
     stretches = changed_ranges(before, project.document)
     if project.history.preview_pose is not unkeyed:
         poses = filter(None, (unkeyed, project.history.preview_pose))
         stretches += [FrameRange(pose.frame, pose.frame) for pose in poses]
-    here = project.playhead.frame
+    here = project.timeline.playhead.frame
     if stretches and not any(here in stretch for stretch in stretches):
         frames = (stretch.clamp(here) for stretch in stretches)
         playback.seek(session, min(frames, key=lambda frame: abs(frame - here)))
@@ -178,19 +177,19 @@ def _go_to_change(
 @with_project
 def select_handles(_: Session, project: Project, handles: frozenset[int]) -> None:
     """Select these handles where they exist, and no keys."""
-    project.selected_handles, project.selected_frames = handles, frozenset()
+    project.selection.select_handles(handles)
     _forget_what_is_gone(project)
 
 
 def _select_text(session: Session, _project: Project) -> str:
-    return _("Select all keys") if session.is_timeline_focused else _("Select all handles")
+    return _("Select all keys") if session.display.is_timeline_focused else _("Select all handles")
 
 
 @named_action("select all", _("Select all"), "Ctrl+A", detail=_select_text)
 @with_project
 def select_all(session: Session, project: Project) -> None:
     """Select every handle or, in the timeline, the keys of all channels."""
-    if session.is_timeline_focused:
+    if session.display.is_timeline_focused:
         select_channel_keys(session, movable_keys(project.document))
     else:
         select_handles(session, frozenset(handle.id for handle in project.layer.handles))
@@ -201,31 +200,31 @@ def select_all(session: Session, project: Project) -> None:
     _("Deselect"),
     "Escape",
     why_disabled=unless(
-        lambda _, project: project.selected_handles or project.selected_keys,
+        lambda _, project: project.selection.handles or project.selection.keys,
         _("No handle or key is selected."),
     ),
 )
 @with_project
 def deselect_all(_: Session, project: Project) -> None:
-    project.selected_handles, project.selected_keys = frozenset(), {}
+    project.selection.clear()
 
 
 @with_project
 def deselect_keys(_: Session, project: Project) -> None:
     """Deselect all keys; the handle selection stays."""
-    project.selected_keys = {}
+    project.selection.deselect_keys()
 
 
 @with_project
 def select_keys(session: Session, project: Project, frames: frozenset[int]) -> None:
     """Select the keys at these frames where they exist, and no handles."""
-    select_channel_keys(session, {pose_channel(project.active): frames})
+    select_channel_keys(session, {pose_channel(project.selection.active): frames})
 
 
 @with_project
 def select_channel_keys(_: Session, project: Project, keys: KeysByChannel) -> None:
     """Select keys of several channels where they exist, and no handles."""
-    project.selected_handles, project.selected_keys = frozenset(), keys
+    project.selection.select_keys(keys)
     _forget_what_is_gone(project)
 
 
@@ -242,9 +241,9 @@ def movable_keys(document: Document) -> KeysByChannel:
 
 def _has_deletable(session: Session, project: Project) -> bool:
     """Return whether keys, handles, a joint of a motion preset or a channel are selected."""
-    joint = project.motion_setup is not None and project.motion_setup.selected_joint
-    is_channel = session.is_timeline_focused and project.channel.kind is not POSE
-    return bool(joint or project.selected_handles or project.selected_keys or is_channel)
+    joint = session.tools.motion_setup is not None and session.tools.motion_setup.selected_joint
+    is_channel = session.display.is_timeline_focused and project.channel.kind is not POSE
+    return bool(joint or project.selection.handles or project.selection.keys or is_channel)
 
 
 @named_action(
@@ -259,28 +258,29 @@ def delete_selection(session: Session, project: Project) -> None:
 
     While a motion is drafted, leave out the joint that was touched last.
     """
-    if project.motion_setup is not None and project.motion_setup.selected_joint is not None:
-        joint_placement.exclude_joint(session, project.motion_setup.selected_joint)
-    elif project.selected_keys:
+    draft = session.tools.motion_setup
+    if draft is not None and draft.selected_joint is not None:
+        joint_placement.exclude_joint(session, draft.selected_joint)
+    elif project.selection.keys:
         _delete_keys(session, project)
-    elif session.is_timeline_focused and project.channel.kind is not POSE:
+    elif session.display.is_timeline_focused and project.channel.kind is not POSE:
         channel = project.channel
         keys = {channel: frames_in(project.document, channel)}
         edit_document(session, channel_commands.delete_keys(keys))
-    elif project.selected_handles:
-        remove_handles(session, project.selected_handles)
+    elif project.selection.handles:
+        remove_handles(session, project.selection.handles)
 
 
 def _delete_keys(session: Session, project: Project) -> None:
     """Delete the selected keys; a layer whose keys are all selected keeps its first key."""
-    keys, keeping = dict(project.selected_keys), list[str]()
-    for channel, chosen in project.selected_keys.items():
+    keys, keeping = dict(project.selection.keys), list[str]()
+    for channel, chosen in project.selection.keys.items():
         is_pose = channel.kind is POSE and channel.layer is not None
         if is_pose and chosen >= frames_in(project.document, channel):
             keys[channel] = chosen - {min(chosen)}
             keeping.append(repr(project.document.layer(channel.layer or 0).name))
     left = {channel: frames for channel, frames in keys.items() if frames}
-    edit_document(session, channel_commands.delete_keys(left or project.selected_keys))
+    edit_document(session, channel_commands.delete_keys(left or project.selection.keys))
     if keeping:
         session.notices.show(_(FIRST_KEY_STAYS).format(layers=", ".join(keeping)))
 
@@ -288,13 +288,5 @@ def _delete_keys(session: Session, project: Project) -> None:
 def _forget_what_is_gone(project: Project) -> None:
     document = project.document
     update_layer_runtimes(project)
-    project.other_selected_layers &= project.layer_runtimes.keys()
-    project.solo &= project.layer_runtimes.keys()
-    project.selected_handles &= {handle.id for handle in project.layer.handles}
-    chosen = {
-        channel: at & frames_in(document, channel) for channel, at in project.selected_keys.items()
-    }
-    project.selected_keys = {channel: frames for channel, frames in chosen.items() if frames}
-    if project.playhead.frame not in document.frames:
-        frame = document.frames.clamp(project.playhead.frame)
-        project.playhead = replace(project.playhead, frame=frame)
+    project.layer_list.keep_existing(document)
+    project.timeline.keep_existing(document)

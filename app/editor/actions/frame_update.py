@@ -106,9 +106,9 @@ def settle_shown(session: Session, project: Project) -> None:
     if _drawn_of(session, project) != project.settled:
         _show(session, project)
         project.settled = _drawn_of(session, project)
-    if session.clock() - project.moved_at >= STILL:
-        project.moved_at = -inf
-    if project.awaits_extent:
+    if session.clock() - project.timeline.moved_at >= STILL:
+        project.timeline.note_rest()
+    if project.viewport.awaits_extent:
         _fit_motion(session, project)
 
 
@@ -135,21 +135,21 @@ def is_due_in_time(session: Session) -> bool:
     """Return whether a step depends on the clock, or on a drag that is not at rest."""
     project = session.project
     if project is None:
-        return session.tutorial is not None
+        return session.tutorial.state is not None
     return (
-        project.playhead.since is not None
-        or session.tutorial is not None
+        project.timeline.playhead.since is not None
+        or session.tutorial.state is not None
         or project.stale is not None
-        or project.moved_at > -inf
+        or project.timeline.moved_at > -inf
         or bool(project.pending or project.deferred)
-        or session.active_tool is not None
+        or session.tools.active is not None
     )
 
 
 @with_project
 def follow_playhead(session: Session, project: Project) -> None:
     """Update the shown frame to the present time while the playhead runs."""
-    if project.playhead.since is not None:
+    if project.timeline.playhead.since is not None:
         _show(session, project)
 
 
@@ -157,11 +157,21 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all values that decide which jobs are due."""
     take, drag = project.recording, project.drag
     return (
-        *(project.document, project.history.position, project.active, project.selected_handles),
-        *(playback.current_frame(session, project), project.playhead.since is None),
+        *(
+            project.document,
+            project.history.position,
+            project.selection.active,
+            project.selection.handles,
+        ),
+        *(playback.current_frame(session, project), project.timeline.playhead.since is None),
         *(session.jobs.kinds, session.jobs.delivered, session.settings.prepares_ahead),
-        *(session.overlays, session.compare_view),
-        *(session.export.frame_box, project.awaits_extent, session.active_tool, session.records),
+        *(session.display.overlays, session.display.compare_view),
+        *(
+            session.export.frame_box,
+            project.viewport.awaits_extent,
+            session.tools.active,
+            session.tools.mode == "record",
+        ),
         *(project.selected_track, take, take and (take.is_over, len(take.samples))),
         *(project.unkeyed_pose, tuple(project.pending), drag and (drag.is_held, drag.preview)),
         tuple(runtime.store for runtime in project.layer_runtimes.values()),
@@ -182,7 +192,9 @@ def _follow_document(session: Session, project: Project) -> None:
     for identity, runtime in project.layer_runtimes.items():
         runtime.corrected = reuse_corrections(project.document, identity, runtime.corrected)
     project.extent.recall(extent_key(project.document))
-    project.update_comparisons(session.compare_view.method if session.compare_view else None)
+    project.update_comparisons(
+        session.display.compare_view.method if session.display.compare_view else None
+    )
     _pin(session, project)
 
 
@@ -248,13 +260,15 @@ def due_jobs(session: Session, project: Project) -> Iterator[Job]:
 
 def _asks_extent(session: Session, project: Project) -> bool:
     """Return whether the extent of the motion is awaited."""
-    return session.export.frame_box is not None or project.awaits_extent
+    return session.export.frame_box is not None or project.viewport.awaits_extent
 
 
 def _prepares_all(session: Session, project: Project) -> bool:
     """Return whether all frames are prepared, not only the shown one."""
     return (
-        session.settings.prepares_ahead or session.overlays.onion or _asks_extent(session, project)
+        session.settings.prepares_ahead
+        or session.display.overlays.onion
+        or _asks_extent(session, project)
     )
 
 
@@ -268,7 +282,7 @@ def _make_frames(session: Session, project: Project) -> Iterator[Job]:
     """Yield jobs for the in-between at the playhead, ahead of the rest of its segment."""
     frame = playback.current_frame(session, project)
     for clip, runtime in _clips(project):
-        is_posed = clip.layer.id == project.active and project.unkeyed_pose is not None
+        is_posed = clip.layer.id == project.selection.active and project.unkeyed_pose is not None
         # A failure at one frame would repeat at others; it is reported once.
         if not is_posed and not runtime.store.has_failed(clip, "frame"):
             work = runtime.store.frame_job(clip, frame)
@@ -296,14 +310,14 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
     frame, clips = playback.current_frame(session, project), _clips(project)
     clips = [(clip, runtime) for clip, runtime in clips if not runtime.store.has_failed(clip)]
     # Until a drag rests, its pose changes once more.
-    is_final = project.drag is None or project.drag.is_at_rest or session.overlays.onion
+    is_final = project.drag is None or project.drag.is_at_rest or session.display.overlays.onion
     prepares_all = is_final and _prepares_all(session, project)
 
     def is_wanted(clip: Clip, store: InbetweenCache) -> bool:
         return prepares_all or not store.is_exact(clip, frame)
 
     # In-betweens that are not visible during a drag are not computed for each move.
-    is_seen = session.overlays.onion or project.visible_drag is None
+    is_seen = session.display.overlays.onion or project.visible_drag is None
     if is_seen or POSING not in session.jobs.kinds:
         # Clips whose shown frame is an approximation come first.
         for clip, runtime in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
@@ -348,7 +362,7 @@ def _prepare(
         return None
     # During a drag with onion skin all are made at once, so that the ghosts stay together.
     # Otherwise one at a time, so that more urgent jobs do not wait long.
-    if not (session.overlays.onion and project.visible_drag is not None):
+    if not (session.display.overlays.onion and project.visible_drag is not None):
         lacking = lacking[:1]
     prepare = store.segments_job(clip, lacking, runtime.store.sampler)
     return _interval_job(session, kind, runtime, clip, work=prepare, done=store.add)
@@ -356,7 +370,10 @@ def _prepare(
 
 def _stream(session: Session, project: Project) -> Iterator[Job]:
     """Yield some steps of a series in progress or of the next series."""
-    frame, heat = playback.current_frame(session, project), session.overlays.heat_map != "none"
+    frame, heat = (
+        playback.current_frame(session, project),
+        session.display.overlays.heat_map != "none",
+    )
     for clip, runtime in _clips(project):
         for store in filter(None, (runtime.store, runtime.fine)):
             if STREAMING in session.jobs.kinds or runtime.store.has_failed(clip, "series"):
@@ -437,7 +454,7 @@ def _cut(session: Session, project: Project) -> Iterator[Job]:
 def _trace(session: Session, project: Project) -> Iterator[Job]:
     """Yield the job for motion paths of the active layer's handles, while some are shown."""
     clip, paths = project.clip, project.paths
-    if session.overlays.paths and project.selected_handles:
+    if session.display.overlays.paths and project.selection.handles:
         document, known, siblings = project.document, paths.value, project.samplers
         sibling = project.layer_runtime.store.sampler
 
@@ -502,7 +519,7 @@ def _fit_motion(session: Session, project: Project) -> None:
     if project.extent.follows(source) and project.extent.value is not None:
         viewing.zoom_to_box(session, project.extent.value)
     elif project.extent.has_failed(source):
-        project.awaits_extent = False
+        project.viewport.stop_awaiting_extent()
 
 
 def _show(session: Session, project: Project) -> None:
@@ -512,11 +529,11 @@ def _show(session: Session, project: Project) -> None:
         project.layer_runtime.corrected.lead(frame)
     shown, comparisons, poses = {}, {}, {}
     if any(each.shown and each.shown.frame != frame for each in project.layer_runtimes.values()):
-        project.moved_at = session.clock()
+        project.timeline.note_move(session.clock())
     is_moving = _is_moving(session, project)
     for clip, runtime in _clips(project):
         layer, comparison = clip.layer.id, runtime.comparison
-        pose = project.unkeyed_pose if layer == project.active else None
+        pose = project.unkeyed_pose if layer == project.selection.active else None
         if pose is not None:
             poses[layer] = pose
         fine = [runtime.fine] if runtime.fine is not None and not is_moving else []
@@ -539,8 +556,10 @@ def _show(session: Session, project: Project) -> None:
 
 def _is_moving(session: Session, project: Project) -> bool:
     """Return whether the shown frame changes too fast for fine meshes."""
-    is_scrubbed = session.clock() - project.moved_at < STILL
+    is_scrubbed = session.clock() - project.timeline.moved_at < STILL
     is_moving = (
-        project.visible_drag is not None or project.playhead.since is not None or is_scrubbed
+        project.visible_drag is not None
+        or project.timeline.playhead.since is not None
+        or is_scrubbed
     )
-    return is_moving and not session.full_detail
+    return is_moving and not session.display.full_detail

@@ -16,7 +16,7 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0)
 def seek(session: Session, project: Project, frame: int) -> None:
     """Put the playhead on a frame of the animation."""
     frame = project.document.frames.clamp(frame)
-    project.playhead = project.playhead.seek(frame, session.clock())
+    project.timeline.seek(frame, session.clock())
 
 
 def scrub(session: Session, frame: int) -> None:
@@ -30,32 +30,31 @@ def scrub(session: Session, frame: int) -> None:
     _("Play"),
     icon="PLAY",
     hint=_("Play or stop"),
-    active=lambda session: session.project and session.project.playhead.since is not None,
+    active=lambda session: session.project and session.project.timeline.playhead.since is not None,
     key_text=_("Space"),
 )
 @with_project
 def toggle_play(session: Session, project: Project) -> None:
-    turn = project.playhead.play if project.playhead.since is None else project.playhead.pause
-    project.playhead = turn(project.document, session.clock())
+    project.timeline.toggle_play(project.document, session.clock())
 
 
 def toggle_play_on_space(session: Session) -> None:
     """Play or stop when Space is released, unless Space was held to pan the view."""
-    if not session.is_space_used:
+    if not session.tools.is_space_used:
         toggle_play(session)
-    session.is_space_used = False
+    session.tools.use_space(used=False)
 
 
 @with_project
 def stop_playback(session: Session, project: Project) -> None:
     """Stop playback at the present frame."""
-    project.playhead = project.playhead.pause(project.document, session.clock())
+    project.timeline.pause(project.document, session.clock())
 
 
 @with_project
 def stop_playback_at_end(session: Session, project: Project) -> None:
     """Stop an animation that does not loop at its end; once a frame."""
-    if project.playhead.is_over(project.document, session.clock()):
+    if project.timeline.playhead.is_over(project.document, session.clock()):
         stop_playback(session)
 
 
@@ -177,11 +176,11 @@ def go_to_end(session: Session, project: Project) -> None:
 @with_project
 def set_playback_speed(session: Session, project: Project, speed: float) -> None:
     """Set the speed as a multiple of the document's frame rate."""
-    project.playhead = project.playhead.at_speed(speed, project.document, session.clock())
+    project.timeline.set_speed(speed, project.document, session.clock())
 
 
 def current_frame(session: Session, project: Project) -> int:
-    return project.playhead.frame_at(project.document, session.clock())
+    return project.timeline.playhead.frame_at(project.document, session.clock())
 
 
 def edited_frame(session: Session, project: Project) -> int:

@@ -63,17 +63,17 @@ def begin_tutorial(session: Session) -> None:
 def begin_tutorial_with_own_drawing(session: Session) -> None:
     """Ask for a drawing, and guide the person through its first animation."""
     session.ask_file(_("Open a drawing"), files.OPENABLE, lambda path: do(files.open_file, path))
-    session.tutorial = TutorialState()
+    session.tutorial.show(TutorialState())
 
 
 def install_tutorial(session: Session, opened: files.OpenedFile, guide: TutorialState) -> None:
     """Open the giraffe in the window, and begin."""
     files.install_opened_file(session, sample_images() / SAMPLE, opened)
-    session.tutorial = _attached(session, guide)
+    session.tutorial.show(_attached(session, guide))
 
 
 def is_tutorial_shown(session: Session) -> bool:
-    return session.tutorial is not None and session.tutorial.project is not None
+    return session.tutorial.state is not None and session.tutorial.state.project is not None
 
 
 @named_action(
@@ -84,23 +84,26 @@ def is_tutorial_shown(session: Session) -> bool:
 )
 def end_tutorial(session: Session) -> None:
     """End the tutorial; the project stays."""
-    session.tutorial = None
+    session.tutorial.end()
 
 
 def update_tutorial(session: Session) -> None:
     """Go on or back to the next step, depending on the document; once a frame."""
-    guide, project = session.tutorial, session.project
+    guide, project = session.tutorial.state, session.project
     if guide is None:
         return
     if guide.project is None:
         # No file was chosen, or the file could not be opened.
         is_given_up = project is None and session.dialogs.current is None and not session.jobs.kinds
-        session.tutorial = None if is_given_up else _attached(session, guide)
+        if is_given_up:
+            session.tutorial.end()
+        else:
+            session.tutorial.show(_attached(session, guide))
     elif guide.project is not project:
-        session.tutorial = None
-    elif session.active_tool is None and project.timeline.gesture is None:
+        session.tutorial.end()
+    elif session.tools.active is None and project.timeline.gesture is None:
         # The next step must not disturb a drag.
-        session.tutorial = _advanced(session, project, guide)
+        session.tutorial.show(_advanced(session, project, guide))
 
 
 def is_first_pose_changed(layer: Layer) -> bool:
@@ -160,7 +163,7 @@ def _advanced(session: Session, project: Project, guide: TutorialState) -> Tutor
     if guide.stage == "done":
         return guide
     moves = any(map(_moves, project.document.layers))
-    has_played = moves and (guide.has_played or project.playhead.since is not None)
+    has_played = moves and (guide.has_played or project.timeline.playhead.since is not None)
     step = _next_step(project, guide, moves=moves, has_played=has_played)
     exported = session.export.completed
     if exported is not guide.exported and guide.stage == step == "export":
@@ -179,7 +182,7 @@ def _next_step(
     wanted = HOLDS_AND_MOVES if guide.handle_place is None else 1
     if len(new) < wanted and not any(map(is_first_pose_changed, project.document.layers)):
         return "handle"
-    playhead, first = project.playhead, project.layer.keys[0].frame
+    playhead, first = project.timeline.playhead, project.layer.keys[0].frame
     return "time" if playhead.since is not None or playhead.frame == first else "pose"
 
 

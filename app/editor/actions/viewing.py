@@ -7,8 +7,9 @@ from typing import Any, Literal
 from app.document import Baseline, Meshing, Variant
 from app.editor.action import do
 from app.editor.actions.action_spec import ActionSpec, named_action
-from app.editor.project import Project, fit_view_around
-from app.editor.session import CurveKind, HeatMap, Session, Tint, with_project
+from app.editor.parts.viewport_state import CurveKind, HeatMap, Tint, fit_view_around
+from app.editor.project import Project
+from app.editor.session import Session, with_project
 from app.motion import BoundingBox, bounding_box
 from app.render import View
 from app.storage import (
@@ -30,8 +31,7 @@ HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 @with_project
 def set_view(_: Session, project: Project, camera: View | None) -> None:
     """Move the camera; None fits the picture's frame into the viewport at any size."""
-    project.camera, project.is_camera_view = camera, False
-    project.awaits_extent = False
+    project.viewport.show(camera)
 
 
 FIT_PICTURE = ActionSpec(do(set_view, None), "fit picture", _("Fit picture"))
@@ -54,7 +54,7 @@ def zoom_to_pose(session: Session, project: Project) -> None:
 @with_project
 def zoom_to_motion(_: Session, project: Project) -> None:
     """Show the area that all layers cover in any frame, as soon as it is measured."""
-    project.awaits_extent = True
+    project.viewport.await_extent()
 
 
 @named_action("fit selection", _("Fit selection"), "F")
@@ -65,7 +65,7 @@ def zoom_to_selection(session: Session, project: Project) -> None:
     if shown is None:
         return
     box = bounding_box(shown.placement.apply(shown.positions))
-    selected = [handle.id in project.selected_handles for handle in shown.clip.layer.handles]
+    selected = [handle.id in project.selection.handles for handle in shown.clip.layer.handles]
     if any(selected):
         room = AROUND_HANDLES * abs(box.upper - box.lower) * (1 + 1j)
         box = bounding_box(shown.placement.apply(shown.handle_positions[selected]))
@@ -75,29 +75,28 @@ def zoom_to_selection(session: Session, project: Project) -> None:
 
 def zoom_to_box(session: Session, box: BoundingBox) -> None:
     """Move the camera so that a box of the scene fills the viewport."""
-    set_view(session, fit_view_around(box, session.screen))
+    set_view(session, fit_view_around(box, session.display.screen))
 
 
 @named_action("actual size", _("Actual size"), "1")
 @with_project
 def zoom_to_actual_size(session: Session, project: Project) -> None:
     """Show one pixel of the picture as one pixel of the screen, around the same centre."""
-    set_view(session, replace(project.view(session.screen), scale=1.0))
+    set_view(session, replace(project.view_on(session.display.screen), scale=1.0))
 
 
 def set_viewport_size(session: Session, width: int, height: int) -> None:
     """Note the viewport's size in pixels."""
-    session.screen = (max(width, 1), max(height, 1))
+    session.display.resize(width, height)
 
 
 def toggle_overlay(session: Session, overlay: OverlayName) -> None:
-    shown: dict[str, Any] = {overlay: not getattr(session.overlays, overlay)}
-    session.overlays = replace(session.overlays, **shown)
+    session.display.show_overlays(**{overlay: not getattr(session.display.overlays, overlay)})
 
 
 def _overlay(overlay: OverlayName, name: str, label: str, keys: str, **more: Any) -> ActionSpec:
     def is_shown(session: Session) -> bool:
-        return bool(getattr(session.overlays, overlay))
+        return bool(getattr(session.display.overlays, overlay))
 
     return ActionSpec(do(toggle_overlay, overlay), name, label, keys, active=is_shown, **more)
 
@@ -137,7 +136,7 @@ MOTION_PATHS = _overlay(
 
 def show_heat_map(session: Session, heat_map: HeatMap) -> None:
     """Colour the shape by one of the distortions, or show its picture."""
-    session.overlays = replace(session.overlays, heat_map=heat_map)
+    session.display.show_overlays(heat_map=heat_map)
 
 
 @named_action(
@@ -146,16 +145,16 @@ def show_heat_map(session: Session, heat_map: HeatMap) -> None:
     "D",
     icon="TEMPERATURE_HALF",
     hint=_("Colour the shape by its distortion"),
-    active=lambda session: session.overlays.heat_map != "none",
+    active=lambda session: session.display.overlays.heat_map != "none",
 )
 def toggle_heat_map(session: Session) -> None:
     """Show the heat map of the conformal distortion, or hide the heat map."""
-    show_heat_map(session, "k" if session.overlays.heat_map == "none" else "none")
+    show_heat_map(session, "k" if session.display.overlays.heat_map == "none" else "none")
 
 
 def show_curves(session: Session, kind: CurveKind) -> None:
     """Show the curves of the distortion, relative to the keys or absolute."""
-    session.curves = kind
+    session.display.show_curves(kind)
 
 
 @named_action(
@@ -164,35 +163,29 @@ def show_curves(session: Session, kind: CurveKind) -> None:
     "U",
     icon="TABLE_COLUMNS",
     hint=_("Compare with another method, beside a divider that can be dragged"),
-    active=lambda session: session.compare_view is not None,
+    active=lambda session: session.display.compare_view is not None,
 )
 def toggle_comparison(session: Session) -> None:
     """Show a second method beside the drawing's method, or the drawing alone."""
-    if session.compare_view is None:
-        session.compare_view = session.last_compare_view
-    else:
-        session.last_compare_view, session.compare_view = session.compare_view, None
+    session.display.toggle_comparison()
 
 
 def compare_with_method(session: Session, method: Variant | Baseline | None) -> None:
     """Show a method beside the drawing's method; None shows the drawing alone."""
-    if (method is None) != (session.compare_view is None):
-        toggle_comparison(session)
-    if method is not None and session.compare_view is not None:
-        session.compare_view = replace(session.compare_view, method=method)
+    if (method is None) != (session.display.compare_view is None):
+        session.display.toggle_comparison()
+    if method is not None:
+        session.display.change_comparison(method=method)
 
 
 def move_comparison_divider(session: Session, place: float) -> None:
     """Move the divider to a share of the viewport's width."""
-    if session.compare_view is not None:
-        place = min(max(place, LEAST_PART), 1.0 - LEAST_PART)
-        session.compare_view = replace(session.compare_view, divider=place)
+    session.display.change_comparison(divider=min(max(place, LEAST_PART), 1.0 - LEAST_PART))
 
 
 def set_side_by_side(session: Session, beside: bool) -> None:  # noqa: FBT001 - a panel's two choices
     """Show the two methods side by side, or at one place under a divider."""
-    if session.compare_view is not None:
-        session.compare_view = replace(session.compare_view, is_side_by_side=beside)
+    session.display.change_comparison(is_side_by_side=beside)
 
 
 def set_onion_skin(session: Session, before: int, after: int, step: int) -> None:
@@ -250,7 +243,7 @@ def _scale_interface(session: Session, step: float) -> None:
 
 def focus_timeline(session: Session, in_timeline: bool) -> None:  # noqa: FBT001 - the only argument
     """Note whether the person works in the timeline or in the drawing."""
-    session.is_timeline_focused = in_timeline
+    session.display.focus_timeline(focused=in_timeline)
 
 
 @named_action(
@@ -268,9 +261,9 @@ def toggle_auto_key(session: Session) -> None:
 
 
 def show_tab(session: Session, title: str) -> None:
-    session.panel_to_focus = title
+    session.display.focus_panel(title)
 
 
 def set_tint(session: Session, by: Tint | None) -> None:
     """Colour the drawing by depth or by stiffness; None shows its own colours."""
-    session.tint = by
+    session.display.show_tint(by)

@@ -40,7 +40,7 @@ def layer_at(
         A layer that is skipped.
     """
     shown = project.layer_runtime.shown
-    frame = project.playhead.frame if shown is None else shown.frame
+    frame = project.timeline.playhead.frame if shown is None else shown.frame
     found = (
         each.id
         for each in reversed(layers_in_draw_order(project.document, frame))
@@ -60,7 +60,7 @@ def is_layer_at(project: Project, identity: int, place: complex) -> bool:
     """Return whether a layer is visible at a place of the scene."""
     shown = project.layer_runtimes[identity].shown
     document = project.document
-    if shown is None or (project.solo and identity not in project.solo):
+    if shown is None or (project.layer_list.solo and identity not in project.layer_list.solo):
         return False
     outline = shown.positions[: len(shown.mesh.domain.outline)]
     place = shown.placement.apply_inverse(place)
@@ -209,19 +209,20 @@ def toggle_visibility_key(session: Session, project: Project, identity: int) -> 
 @with_project
 def note_listed_layer(_: Session, project: Project) -> None:
     """Note that the list of layers has scrolled to the active layer."""
-    project.last_listed_layer = project.active
+    project.layer_list.note_listed(project.selection.active)
 
 
-def ask_layer_name(session: Session, identity: int | None) -> None:
+@with_project
+def ask_layer_name(_: Session, project: Project, identity: int | None) -> None:
     """Edit a layer's name in the list of layers; None ends the editing."""
-    session.named_layer = identity
+    project.layer_list.edit_name(identity)
 
 
 @named_action("rename layer", _("Rename layer"), "F2")
 @with_project
 def rename_active_layer(session: Session, project: Project) -> None:
-    session.panel_to_focus = "Layers"
-    ask_layer_name(session, project.active)
+    session.display.focus_panel("Layers")
+    ask_layer_name(session, project.selection.active)
 
 
 @with_project

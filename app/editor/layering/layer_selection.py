@@ -8,24 +8,21 @@ from app.editor.session import Session, with_project
 @with_project
 def set_active_layer(session: Session, project: Project, identity: int) -> None:
     """Make a layer active: its handles and keys are shown and edited."""
-    project.other_selected_layers = frozenset()
-    if identity == project.active:
-        return
-    release_drag(session)
-    project.lingering |= {project.active}
-    project.active = identity
-    project.selected_handles = project.selected_frames = frozenset()
-    project.selected_track = None
-    project.meshing = project.previewed_limits = None
-    session.hovered = None
+    before = project.selection.active
+    if identity != before:
+        release_drag(session)
+        project.layer_list.linger(before)
+        project.meshing = project.previewed_limits = None
+        session.tools.hover(None)
+    project.selection.activate_layer(identity)
 
 
 @with_project
 def select_layers(session: Session, project: Project, *identities: int) -> None:
     """Select layers; the active layer stays active if it is among them."""
-    if project.active not in identities:
+    if project.selection.active not in identities:
         set_active_layer(session, identities[0])
-    project.other_selected_layers = frozenset(identities) - {project.active}
+    project.selection.select_other_layers(frozenset(identities))
 
 
 @with_project
@@ -42,24 +39,23 @@ def toggle_layers_selected(session: Session, project: Project, *identities: int)
 def select_layers_up_to(session: Session, project: Project, identity: int) -> None:
     """Select the listed layers from the active one to another one."""
     listed = [row.layer.id for row in project.tree if row.layer is not None]
-    ends = sorted((listed.index(project.active), listed.index(identity)))
+    ends = sorted((listed.index(project.selection.active), listed.index(identity)))
     select_layers(session, *listed[ends[0] : ends[1] + 1])
 
 
 @with_project
 def toggle_tree_row(_: Session, project: Project, row: str) -> None:
     """Open or close a row of the layer tree."""
-    project.toggled_rows ^= {row}
-    project.lingering = frozenset()
+    project.layer_list.toggle_row(row)
 
 
 @with_project
 def reset_tree_rows(_: Session, project: Project) -> None:
     """List only the layers of open rows, and the active layer."""
-    project.lingering = frozenset()
+    project.layer_list.drop_lingering()
 
 
 @with_project
 def solo_layers(_: Session, project: Project, *identities: int) -> None:
     """Show only these layers while editing, or all again; exports ignore solo."""
-    project.solo = frozenset() if project.solo == set(identities) else frozenset(identities)
+    project.layer_list.toggle_solo(frozenset(identities))

@@ -276,7 +276,10 @@ def _delete(
     removals = [layer_commands.remove_layer(identity) for identity in identities]
     count = len(identities)
     label = ngettext("Delete layer", "Delete {count} layers", count).format(count=count)
-    was_active, index = project.active in identities, order.index(project.active)
+    was_active, index = (
+        project.selection.active in identities,
+        order.index(project.selection.active),
+    )
     editing.edit_document(session, combine_commands(label, [*inherited, *removals]))
     if was_active:
         near = [*order[:index][::-1], *order[index + 1 :]]

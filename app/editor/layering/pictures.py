@@ -225,9 +225,10 @@ def ask_replacement_picture(session: Session, project: Project, identity: int) -
     session.ask_file(title, files.PICTURES, lambda path: do(replace_picture, identity, path))
 
 
-def set_drop_target(session: Session, identity: int) -> None:
+@with_project
+def set_drop_target(_: Session, project: Project, identity: int) -> None:
     """Note the layer row under the pointer in this frame."""
-    session.pointed_layer = identity
+    project.layer_list.point_at(identity)
 
 
 def drop_files(session: Session, paths: Sequence[Path]) -> None:
@@ -246,8 +247,8 @@ def drop_files(session: Session, paths: Sequence[Path]) -> None:
     ]
     text = _("New layers lie in front of the others and share their timeline.")
     if is_one:
-        onto = session.pointed_layer
-        identity = project.active if onto is None else onto
+        onto = project.layer_list.pointed_layer
+        identity = project.selection.active if onto is None else onto
         name = project.document.layer(identity).name
         name = name if len(name) <= LONGEST else f"{name[: LONGEST - 1].rstrip()}…"
         answer = _("Replace {layer}").format(layer=name)

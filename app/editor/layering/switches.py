@@ -25,7 +25,7 @@ def key_switch(session: Session, project: Project, identity: int) -> None:
 @with_project
 def dismiss_switch_suggestion(_: Session, project: Project, group: str) -> None:
     """Stop suggesting a switch for a group."""
-    project.dismissed_suggestions |= {group}
+    project.layer_list.dismiss_suggestion(group)
 
 
 def add_to_switch(session: Session, name: str, *identities: int) -> None:

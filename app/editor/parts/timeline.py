@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from math import inf
 from typing import Any, Literal, Self
 
 from app.document import (
@@ -11,10 +12,12 @@ from app.document import (
     FrameRange,
     KeysByChannel,
     Layer,
+    Playhead,
     Pose,
     measure_target_errors,
 )
 from app.editor.work.derived import Derived
+from app.editor.work.revised import Revised
 
 SMALLEST, LARGEST = 0.002, 4.0  # em per frame
 MARGIN = 1.4  # em left and right of fitted frames
@@ -156,9 +159,11 @@ def _measured_by(layer: Layer) -> tuple[object, ...]:
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class TimelineState:
-    """View state of a project's timeline."""
+class TimelineState(Revised):
+    """The playhead, and the view of a project's timeline."""
 
+    playhead: Playhead = field(default_factory=Playhead)
+    moved_at: float = -inf  # the clock's seconds when the playhead last moved
     time_range: TimeRangeView | None = None  # visible range; None fits all frames
     gesture: TimeGesture | None = None
     # Visible range during the gesture, fixed so that nothing moves under the pointer.
@@ -181,3 +186,70 @@ class TimelineState:
     slowed: Derived[tuple[Clip, int], Mapping[int, float]] = field(
         default_factory=lambda: Derived({})
     )
+
+    def seek(self, frame: int, now: float) -> None:
+        """Put the playhead on a frame; it goes on to play if it plays."""
+        self.playhead = self.playhead.seek(frame, now)
+
+    def toggle_play(self, document: Document, now: float) -> None:
+        turn = self.playhead.play if self.playhead.since is None else self.playhead.pause
+        self.playhead = turn(document, now)
+
+    def pause(self, document: Document, now: float) -> None:
+        self.playhead = self.playhead.pause(document, now)
+
+    def set_speed(self, speed: float, document: Document, now: float) -> None:
+        self.playhead = self.playhead.at_speed(speed, document, now)
+
+    def put_playhead(self, playhead: Playhead) -> None:
+        """Go on with another playhead, as at the start and the end of a recording."""
+        self.playhead = playhead
+
+    def keep_existing(self, document: Document) -> None:
+        """Keep the playhead on a frame of a document."""
+        self.playhead = replace(self.playhead, frame=document.frames.clamp(self.playhead.frame))
+
+    def note_move(self, now: float) -> None:
+        """Note that another frame is shown."""
+        self.moved_at = now
+
+    def note_rest(self) -> None:
+        """Note that the playhead rests on the shown frame."""
+        self.moved_at = -inf
+
+    def show_range(self, time_range: TimeRangeView | None) -> None:
+        """Show a range of time, or all frames; during a gesture, until it ends."""
+        if self.gesture is None:
+            self.time_range = time_range
+        else:
+            self.gesture_time_range = time_range
+
+    def note_shown_frame(self, frame: int) -> None:
+        """Note that the visible range follows the playhead to a frame."""
+        self.last_shown_frame = frame
+
+    def scroll_rows(self, to: float, selected: Channel[Any]) -> None:
+        """Scroll the rows to em below the first row; the selected row counts as shown."""
+        self.scrolled, self.last_shown_rows = to, (selected, self.expanded_layers)
+
+    def begin_gesture(self, gesture: TimeGesture, time_range: TimeRangeView) -> None:
+        """Begin a gesture; the shown range of time is fixed until it ends."""
+        self.gesture, self.gesture_time_range = gesture, time_range
+
+    def move_gesture(self, gesture: TimeGesture) -> None:
+        """Replace the gesture by its next state."""
+        self.gesture = gesture
+
+    def end_gesture(self) -> None:
+        """End the gesture; a range that did not show all frames is that of the gesture."""
+        if self.time_range is not None:
+            self.time_range = self.gesture_time_range
+        self.gesture = self.gesture_time_range = None
+
+    def toggle_lanes(self, layer: int) -> bool:
+        """Show or hide the lanes of a layer's channels, and return whether they are shown."""
+        self.expanded_layers ^= {layer}
+        return layer in self.expanded_layers
+
+    def show_lanes(self, layer: int) -> None:
+        self.expanded_layers |= {layer}

@@ -35,7 +35,7 @@ KEYS_COPIED = "{count} keys copied."
 
 def _copy_text(session: Session, project: Project) -> str:
     if is_copying_keys(session, project):
-        count = project.selected_key_count
+        count = project.selection.key_count
         return ngettext("Copy {count} key", "Copy {count} keys", count).format(count=count)
     count = len(project.selected_layers)
     return ngettext("Copy pose", "Copy poses of {count} layers", count).format(count=count)
@@ -87,7 +87,7 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
     works = {}
     for layer in layers:
         clip, runtime = clip_of(document, layer.id), project.layer_runtimes[layer.id]
-        is_active = layer.id == project.active
+        is_active = layer.id == project.selection.active
         pose = pose_at_playhead(session, project) if is_active else None
         pose = pose or keyed_pose_at(clip, segment_time_at(clip, frame))
         if pose is None:
@@ -120,7 +120,7 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
 
 def is_copying_keys(session: Session, project: Project) -> bool:
     """Return whether a copy takes keys, and not the pose at the playhead."""
-    return session.is_timeline_focused and bool(project.selected_keys)
+    return session.display.is_timeline_focused and bool(project.selection.keys)
 
 
 @with_project
@@ -128,7 +128,7 @@ def copy_keys(session: Session, project: Project) -> None:
     """Copy the selected keys."""
     commit_drag_now(session)
     document, keys, tracks, others = project.document, [], [], []
-    for channel, at in project.selected_keys.items():
+    for channel, at in project.selection.keys.items():
         layer = None if channel.layer is None else document.layer(channel.layer)
         track, row = track_in(document, channel), keys_in(document, channel)
         taken = tuple(key for key in row if key.frame in at)

@@ -11,7 +11,11 @@ from app.editor.session import Session, with_project
 def can_flip_again(project: Project) -> bool:
     """Return whether the selected keys still hold the last flipped poses."""
     flip = project.last_flip
-    if flip is None or project.selected_frames != flip.frames or project.active != flip.layer:
+    if (
+        flip is None
+        or project.selection.frames != flip.frames
+        or project.selection.active != flip.layer
+    ):
         return False
     return all(
         project.layer.key(frame).pose is pose
@@ -21,13 +25,15 @@ def can_flip_again(project: Project) -> bool:
 
 def is_mirror_axis_shown(session: Session, project: Project) -> bool:
     """Return whether the axis is shown: after a flip, while its overlay is on."""
-    return project.playhead.since is None and (session.overlays.mirror or can_flip_again(project))
+    return project.timeline.playhead.since is None and (
+        session.display.overlays.mirror or can_flip_again(project)
+    )
 
 
 @with_project
 def move_mirror_axis(_: Session, project: Project, x: float | None, gesture: object) -> None:
     """Set the axis; None is the middle."""
-    project.history.do(pose_commands.set_mirror(project.active, x), gesture=gesture)
+    project.history.do(pose_commands.set_mirror(project.selection.active, x), gesture=gesture)
 
 
 @with_project

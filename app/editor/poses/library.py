@@ -40,9 +40,11 @@ def _save_pose(session: Session, project: Project, layer: Layer, pose: Pose) -> 
         )
         return
     taken = [Keyframe(frame=0, pose=pose)]
-    (key,) = pose_insertion.fit_keys_to_layer(project, project.active, taken, layer.bounds)
-    editing.edit_document(session, pose_commands.save_pose(project.active, key.pose))
-    project.picked_pose = (project.active, project.layer.library[-1].name)
+    (key,) = pose_insertion.fit_keys_to_layer(
+        project, project.selection.active, taken, layer.bounds
+    )
+    editing.edit_document(session, pose_commands.save_pose(project.selection.active, key.pose))
+    project.picked_pose = (project.selection.active, project.layer.library[-1].name)
 
 
 class PoseOffer(NamedTuple):
@@ -153,7 +155,7 @@ def end_pose_blend(session: Session, project: Project) -> None:
     drag = project.drag
     if blend is None or drag is None or blend.gesture not in drag.target_changes:
         return
-    if blend.share >= 1.0 and blend.owner == project.active:
+    if blend.share >= 1.0 and blend.owner == project.selection.active:
         pose = project.document.layer(drag.layer).library_pose(blend.name).pose
         commit_drag(session, project, drag, pose)
 
@@ -170,4 +172,4 @@ def _between(one: Target, other: Target, share: float) -> Target:
 @with_project
 def rename_library_pose(session: Session, project: Project, name: str, to: str) -> None:
     editing.edit_layer(session, pose_commands.rename_pose, name, to)
-    project.picked_pose = (project.active, to)
+    project.picked_pose = (project.selection.active, to)

@@ -102,7 +102,9 @@ def find_active_paste_destination(
     if len(copied) == 1:
         return find_paste_destination(project.document, copied[0], project.layer, way)
     found = _find_paste_destinations(session, project, way)
-    return next((e for e in found if e.layer.id == project.active and e.copied.keys), None)
+    return next(
+        (e for e in found if e.layer.id == project.selection.active and e.copied.keys), None
+    )
 
 
 def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMode) -> str | None:
@@ -202,7 +204,7 @@ def find_receiving_layers(
     own = names.get(source.name) or next((f for f in kin if f.domain is source.domain), None)
     if is_alone and way == "as it is":
         yield from map(document.layer, project.selected_layers)
-    elif is_alone and (own is None or own.id != project.active):
+    elif is_alone and (own is None or own.id != project.selection.active):
         yield project.layer
     elif own is not None:
         other = None if way == "as it is" else mirrored_name(own.name, document.pairs)

@@ -71,9 +71,8 @@ def _paste_text(session: Session, project: Project, way: PasteMode) -> str:
     onto_layer, onto_layers = PASTE_TEXTS[way]
     if len(onto) > 1:
         return onto_layers.format(count=len(onto))
-    return "".join(
-        onto_layer.format(layer=layer.name) for layer in onto if layer.id != project.active
-    )
+    others = [layer for layer in onto if layer.id != project.selection.active]
+    return "".join(onto_layer.format(layer=layer.name) for layer in others)
 
 
 def _paste_action(way: PasteMode, name: str, label: str, keys: str, **more: Any) -> ActionSpec:
@@ -136,7 +135,7 @@ def _paste(session: Session, project: Project, frame: int, way: PasteMode) -> No
         for reason in reasons:
             session.notices.show(reason)
         names = [each.layer.name for each in found]
-        if any(each.layer.id != project.active for each in found):
+        if any(each.layer.id != project.selection.active for each in found):
             if len(names) > 1:
                 text = ngettext(
                     "Pasted onto {count} layer.", "Pasted onto {count} layers.", len(names)
@@ -146,7 +145,7 @@ def _paste(session: Session, project: Project, frame: int, way: PasteMode) -> No
                 text = _("Pasted onto {layer}.").format(layer=names[0])
             session.notices.show(text, topic="paste")
 
-    project.selected_keys = {}
+    project.selection.deselect_keys()
     if found:
         paste_poses(session, project, found, way, by, gesture=gesture, then=then)
     else:
@@ -267,6 +266,6 @@ def _note_flip(project: Project, landing: PasteDestination, flipped: Sequence[Ke
     project.last_flip = LastFlip(
         layer=layer,
         keys=tuple(fit_copied_keys(project, landing)),
-        frames=project.selected_keys.get(pose_channel(layer), frozenset()),
+        frames=project.selection.keys.get(pose_channel(layer), frozenset()),
         poses=tuple(key.pose for key in flipped),
     )

@@ -79,7 +79,7 @@ def paste_keys(
             session.notices.show(message_of(error))
             continue
         frames = frozenset(key.frame for key in moved)
-        project.selected_keys = {**project.selected_keys, channel: frames}
+        project.selection.add_keys(channel, frames)
 
 
 def _exists(document: Document, channel: Channel[Any]) -> bool:

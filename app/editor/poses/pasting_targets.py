@@ -29,7 +29,7 @@ def paste_on_selected_disabled_reason(
         return paste_keys_disabled_reason(session, project, way) or _(
             "Select a copied layer first."
         )
-    if not project.selected_handles:
+    if not project.selection.handles:
         return _("Select the handles to paste on first.")
     return landing.disabled_reason
 
@@ -47,7 +47,7 @@ def paste_on_selected(session: Session, project: Project, way: PasteMode = "as i
         landing = find_active_paste_destination(session, project, way)
         if landing is not None:
             targets = pasted_targets(project, landing, way)
-            set_targets(session, {i: targets[i] for i in project.selected_handles if i in targets})
+            set_targets(session, {i: targets[i] for i in project.selection.handles if i in targets})
 
 
 FLIP_ON_SELECTED = ActionSpec(

@@ -24,7 +24,7 @@ def pasteable_tracks(
     """
     copied, chosen = session.clipboard.tracks, project.selected_track
     if way == "as it is" and len(copied) == 1 and chosen is not None:
-        return {(project.active, chosen): copied[0]}
+        return {(project.selection.active, chosen): copied[0]}
     carried = {}
     for landing in find_paste_destinations(session, project, way):
         ours = {other: identity for identity, other in landing.pairs.items()}
@@ -106,7 +106,6 @@ def paste_track(
         command = channel_commands.insert_keys({track_channel(identity, track): keys})
     project.history.do(command, gesture=gesture)
     frames = frozenset(key.frame for key in keys)
-    project.selected_handles, project.selected_keys = (
-        frozenset(),
-        {**project.selected_keys, track_channel(identity, track): frames},
+    project.selection.select_keys(
+        {**project.selection.keys, track_channel(identity, track): frames}
     )

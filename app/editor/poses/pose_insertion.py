@@ -71,7 +71,7 @@ def insert_poses(
     unkeyed = project.history.preview_pose
     if unkeyed is not None and unkeyed.frame in chosen_of.get(pose_channel(unkeyed.layer), ()):
         project.history.set_preview_pose(None, gesture=gesture)
-    project.selected_handles, project.selected_keys = frozenset(), chosen_of
+    project.selection.select_keys(chosen_of)
 
 
 def stop_and_get_frame(session: Session, project: Project) -> int:

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import Self
 
 from app.editor.actions.posing.handles import set_anchor, toggle_anchor_at_handle
+from app.editor.parts.tools import Hint
 from app.editor.project import Project
-from app.editor.session import Hint, Session
+from app.editor.session import Session
 from app.editor.tools.tool import PointerHit, Tool
 from app.texts import _
 

@@ -8,8 +8,9 @@ from app.editor.actions import playback
 from app.editor.layering.layer_list import is_layer_at, layer_at
 from app.editor.layering.parenting import attach_layer, is_same_or_descendant
 from app.editor.overlay_shapes import CircleShape, ColourRole, LineShape, OverlayShape
+from app.editor.parts.tools import Hint
 from app.editor.project import Project
-from app.editor.session import Hint, Session
+from app.editor.session import Session
 from app.editor.tools.anchor_tool import AnchorTool
 from app.editor.tools.pose_tool import PoseTool
 from app.editor.tools.select_tools import PickLayerTool
@@ -44,7 +45,7 @@ class AttachTool(Tool):
         if not _takes_anchor(session, project, spot) or (spot.handle is not None and not spot.ctrl):
             return None
         names = {layer.id: layer.name for layer in project.document.layers}
-        child = project.active
+        child = project.selection.active
         return cls(project=project, spot=spot, child=child, names=names, place=spot.place)
 
     def move(self, session: Session, place: complex) -> None:
@@ -52,7 +53,7 @@ class AttachTool(Tool):
         project = self.project
         self.place = place
         self.moved = self.moved or self.is_away(session, self.spot.place, place)
-        if self.moved and project.active == self.child:
+        if self.moved and project.selection.active == self.child:
             there = to_scene(project, place)
             self.parent = parent = layer_at(project, there, besides=self.child)
             self.is_circle = parent is not None and is_same_or_descendant(
@@ -108,5 +109,5 @@ class AttachTool(Tool):
 
 def _takes_anchor(session: Session, project: Project, spot: PointerHit) -> bool:
     """Return whether a press grabs the anchor of a layer, in a scene of several layers."""
-    is_free = not (spot.shift or spot.alt or spot.on_ring) and session.overlays.handles
+    is_free = not (spot.shift or spot.alt or spot.on_ring) and session.display.overlays.handles
     return spot.on_anchor and is_free and len(project.document.layers) > 1

@@ -5,9 +5,10 @@ from dataclasses import dataclass, field
 from typing import Self
 
 from app.editor.overlay_shapes import OverlayShape
+from app.editor.parts.tools import Hint
 from app.editor.poses import flipping
 from app.editor.project import Project
-from app.editor.session import Hint, Session
+from app.editor.session import Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool
 from app.texts import _

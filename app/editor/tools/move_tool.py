@@ -6,11 +6,11 @@ from typing import Self
 from app.document import Layer
 from app.editor.actions import playback
 from app.editor.actions.action_spec import named_action, unless
-from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import move_pose, release_drag
 from app.editor.layering.layer_selection import set_active_layer
+from app.editor.parts.tools import Hint
 from app.editor.project import Project
-from app.editor.session import Hint, Session, with_project
+from app.editor.session import Session, with_project
 from app.editor.tools.pose_tool import PoseTool
 from app.editor.tools.tool import PointerHit, to_scene
 from app.texts import _
@@ -26,11 +26,11 @@ class MoveTool(PoseTool):
 
     @classmethod
     def mode(cls, session: Session, _project: Project) -> str:
-        return _("Moving the whole layer") if session.moves else ""
+        return _("Moving the whole layer") if session.tools.mode == "move" else ""
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        if session.moves:
+        if session.tools.mode == "move":
             root = _root_parent(session, project, spot.layer)
             return (Hint(_("drag to move {layer}").format(layer=root.name)),)
         return (Hint(_("drag to move the whole layer"), "ctrl+shift"),) if _is_beside(spot) else ()
@@ -39,10 +39,12 @@ class MoveTool(PoseTool):
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Grab the layer under the pointer or, with keys beside the shape, the active layer."""
         is_by_keys = spot.ctrl and spot.shift and _is_beside(spot)
-        if not is_by_keys and (spot.ctrl or not session.moves):
+        if not is_by_keys and (spot.ctrl or session.tools.mode != "move"):
             return None
-        start, last = to_scene(project, spot.place), project.active
-        is_free = _set_root_parent_active(session, project, spot.layer if session.moves else None)
+        start, last = to_scene(project, spot.place), project.selection.active
+        is_free = _set_root_parent_active(
+            session, project, spot.layer if session.tools.mode == "move" else None
+        )
         return cls(project=project, start=start, last=last, is_free=is_free)
 
     def _pull(self, session: Session) -> None:
@@ -65,16 +67,12 @@ class MoveTool(PoseTool):
     "V",
     icon="UP_DOWN_LEFT_RIGHT",
     hint=_("Move the whole layer in this frame, by drag or arrow keys"),
-    active=lambda session: session.moves,
+    active=lambda session: session.tools.mode == "move",
 )
-@with_project
-def toggle_move_tool(session: Session, project: Project) -> None:
+def toggle_move_tool(session: Session) -> None:
     """Select the move tool, or the pose tool if the move tool is selected."""
-    if session.active_tool is None:
-        in_hand = session.cutting, session.material, project.motion_setup
-        is_other = any(each is not None for each in in_hand)
-        session.moves = is_other or not session.moves
-        session.cutting = session.material = project.motion_setup = None
+    if session.tools.active is None:
+        session.tools.toggle("move")
 
 
 @named_action(
@@ -82,16 +80,13 @@ def toggle_move_tool(session: Session, project: Project) -> None:
     _("Back to posing"),
     "Escape",
     why_disabled=unless(
-        lambda session, _: not session.is_posing, _("You are posing. No other tool is active.")
+        lambda session, _: not session.tools.is_posing,
+        _("You are posing. No other tool is active."),
     ),
 )
-@with_project
-def return_to_posing(session: Session, project: Project) -> None:
+def return_to_posing(session: Session) -> None:
     """Select the pose tool; close a motion draft."""
-    session.cutting = session.material = None
-    session.moves = False
-    if project.motion_setup is not None:
-        preset_setup.close_motion_setup(session)
+    session.tools.select("pose")
 
 
 @with_project
@@ -109,7 +104,9 @@ def _is_beside(spot: PointerHit) -> bool:
 def _root_parent(session: Session, project: Project, layer: int | None) -> Layer:
     """Return the topmost parent of a layer, by default of the active layer; or the layer itself."""
     frame = playback.current_frame(session, project)
-    return project.document.parent_chain(project.active if layer is None else layer, frame)[-1]
+    return project.document.parent_chain(
+        project.selection.active if layer is None else layer, frame
+    )[-1]
 
 
 def _set_root_parent_active(session: Session, project: Project, layer: int | None) -> bool:

@@ -24,8 +24,9 @@ from app.editor.actions.tracking.track_dragging import (
 )
 from app.editor.actions.tracking.track_space import track_target
 from app.editor.overlay_shapes import OverlayShape
+from app.editor.parts.tools import Hint
 from app.editor.project import Project
-from app.editor.session import Hint, Session
+from app.editor.session import Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool, to_scene
 from app.editor.work.drag_session import DragStart
@@ -38,7 +39,7 @@ class PoseTool(Tool):
     """The pointer drags handles."""
 
     start: complex  # place of the press
-    handles: frozenset[int] = frozenset()  # ids of the dragged handles
+    dragged: frozenset[int] = frozenset()  # ids of the dragged handles
     taken: int | None = None  # the existing handle under the press
     at_target: bool = False  # whether the drag begins at the targets and not at the handles
     entry: NumericEntry = field(default_factory=NumericEntry)  # typed offset
@@ -56,14 +57,18 @@ class PoseTool(Tool):
         if spot.handle is not None:
             if project.layer.is_locked(spot.handle):
                 return (Hint(_("click to select the locked handle")),)
-            if session.records:
+            if session.tools.mode == "record":
                 return (Hint(_("drag to record the motion")),)
             on_track = draggable_track(project, spot.handle) is not None
             return (Hint(_("drag to key this handle only") if on_track else _("drag to pose")),)
         if spot.track_key is not None:
             text = _("drag to move the key at frame {frame}")
             return (Hint(text.format(frame=spot.track_key)),)
-        if spot.on_shape and session.overlays.handles and not (spot.on_ring or session.records):
+        if (
+            spot.on_shape
+            and session.display.overlays.handles
+            and not (spot.on_ring or session.tools.mode == "record")
+        ):
             return (Hint(_("click to add a handle")),)
         return ()
 
@@ -78,20 +83,24 @@ class PoseTool(Tool):
             pulling = cls(project=project, start=spot.place)
             pulling._take_key(session, project.selected_track, spot.track_key)
             return pulling
-        if not spot.on_shape or not session.overlays.handles or session.records:
+        if (
+            not spot.on_shape
+            or not session.display.overlays.handles
+            or session.tools.mode == "record"
+        ):
             return None
         pulling = cls(project=project, start=spot.place)
         add_handle(session, spot.place, gesture=pulling)
-        pulling.handles = project.selected_handles
+        pulling.dragged = project.selection.handles
         return pulling
 
     @classmethod
     def _take(cls, session: Session, project: Project, spot: PointerHit, handle: int) -> Self:
         pulling = cls(project=project, start=spot.place, taken=handle, at_target=spot.at_target)
-        if handle not in project.selected_handles:
+        if handle not in project.selection.handles:
             editing.select_handles(session, project.layer.grouped_handles(handle))
-        pulling.handles = _movable_handles(project)
-        if handle in pulling.handles:
+        pulling.dragged = _movable_handles(project)
+        if handle in pulling.dragged:
             pulling._take_to_track(session, handle)
         return pulling
 
@@ -99,7 +108,7 @@ class PoseTool(Tool):
         """Drag on the handle's track if its row is selected or the drag is recorded."""
         project, shown = self.project, self.project.layer_runtime.shown
         track = draggable_track(project, pressed)
-        if session.records:
+        if session.tools.mode == "record":
             track = project.layer.track_of(pressed)
         elif track is None:
             return
@@ -110,7 +119,7 @@ class PoseTool(Tool):
         self.origin = complex(shown.handle_positions[identities.index(self.tracked)])
         if self.at_target and shown.correction is not None:
             self.origin = shown.correction.targets.get(self.tracked, self.origin)
-        if session.records:
+        if session.tools.mode == "record":
             self.records = True
             self.start, self.origin = (
                 to_scene(project, each) for each in (self.start, self.origin)
@@ -155,7 +164,7 @@ class PoseTool(Tool):
             elif self.moved:
                 drag_track_handle(session, self.tracked, place, gesture=self)
             return
-        pulled = self.handles & {handle.id for handle in self.project.layer.handles}
+        pulled = self.dragged & {handle.id for handle in self.project.layer.handles}
         if not (self.moved and pulled):
             return
         way = self.offset
@@ -177,7 +186,7 @@ class PoseTool(Tool):
             stop_recording(session, has_moved=self.moved)
         elif self.tracked is not None:
             pass
-        elif session.is_forcing_targets:
+        elif session.tools.is_forcing_targets:
             release_drag_forced(session)
         else:
             release_drag(session)
@@ -195,7 +204,7 @@ class PoseTool(Tool):
 
     @classmethod
     def mode(cls, session: Session, _project: Project) -> str:
-        return _("Recording the next drag of a handle") if session.records else ""
+        return _("Recording the next drag of a handle") if session.tools.mode == "record" else ""
 
     def shapes(self, _place: complex, _em: float) -> Iterable[OverlayShape]:
         return self.entry.shapes(self.start, "px")
@@ -213,4 +222,4 @@ class PoseTool(Tool):
 def _movable_handles(project: Project) -> frozenset[int]:
     """Return the selected handles that are not locked."""
     handles = project.layer.handles
-    return frozenset(h.id for h in handles if h.id in project.selected_handles and not h.locked)
+    return frozenset(h.id for h in handles if h.id in project.selection.handles and not h.locked)

@@ -27,8 +27,9 @@ from app.editor.overlay_shapes import (
     OverlayShape,
     TagShape,
 )
+from app.editor.parts.tools import Hint
 from app.editor.project import Project
-from app.editor.session import Hint, Session
+from app.editor.session import Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool, handle_places
 from app.editor.work.drag_session import DragStart
@@ -58,7 +59,7 @@ class RotateTool(Tool):
     @classmethod
     def hints(cls, _session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if spot.on_ring:
-            (handle,) = project.selected_handles
+            (handle,) = project.selection.handles
             is_alone = draggable_track(project, handle) is not None
             text = _("drag to turn the shape around the handle")
             return (Hint(_("drag to key this handle's rotation only") if is_alone else text),)
@@ -72,10 +73,10 @@ class RotateTool(Tool):
         """Grab the ring around the selected handle, or a handle with Alt."""
         shown = project.layer_runtime.shown
         is_by_key = spot.handle is not None and spot.alt and not (spot.ctrl or spot.shift)
-        is_by_ring = spot.on_ring and len(project.selected_handles) == 1
+        is_by_ring = spot.on_ring and len(project.selection.handles) == 1
         if shown is None or not (is_by_key or is_by_ring):
             return None
-        handle = spot.handle if is_by_key else next(iter(project.selected_handles))
+        handle = spot.handle if is_by_key else next(iter(project.selection.handles))
         identities = [handle.id for handle in shown.clip.layer.handles]
         if handle is None or handle not in identities or project.layer.is_locked(handle):
             return None
@@ -100,7 +101,7 @@ class RotateTool(Tool):
         if not (self.moved or self.is_away(session, self.start, place)):
             return
         if not self.moved:
-            arm = abs(self.start - self.centre) * self.project.view(session.screen).scale
+            arm = abs(self.start - self.centre) * self.project.view_on(session.display.screen).scale
             if arm < LEAST_ARM:
                 # After a press this near, the rotation begins where the pointer leaves.
                 self.start = place
@@ -108,7 +109,7 @@ class RotateTool(Tool):
         swept = (place - self.centre) / (self.start - self.centre or 1)
         if swept and self.entry.value is None:
             angle = cmath.phase(swept)
-            self.swept = STEP * round(angle / STEP) if session.is_snapping else angle
+            self.swept = STEP * round(angle / STEP) if session.tools.is_snapping else angle
             self._turn(session)
 
     def type(self, session: Session, characters: str) -> None:
@@ -152,7 +153,7 @@ class RotateTool(Tool):
         cls, session: Session, project: Project, spot: PointerHit
     ) -> Iterable[OverlayShape]:
         """Return the ring around the only selected handle, with a knob at the shape's top."""
-        found = find_ring(session, project) if session.active_tool is None else None
+        found = find_ring(session, project) if session.tools.active is None else None
         return () if found is None else _ring(*found, spot.em, is_hot=spot.on_ring)
 
     def shapes(self, _place: complex, em: float) -> Iterable[OverlayShape]:
@@ -182,9 +183,13 @@ def is_on_ring(session: Session, project: Project, place: complex, em: float) ->
 
 def find_ring(session: Session, project: Project) -> tuple[complex, float] | None:
     """Return the place and the rotation of the only selected handle, if it can be rotated."""
-    shown, selected = project.layer_runtime.shown, project.selected_handles
-    is_idle = session.is_posing and not session.records and project.playhead.since is None
-    if shown is None or len(selected) != 1 or not (is_idle and session.overlays.handles):
+    shown, selected = project.layer_runtime.shown, project.selection.handles
+    is_idle = (
+        session.tools.is_posing
+        and session.tools.mode != "record"
+        and project.timeline.playhead.since is None
+    )
+    if shown is None or len(selected) != 1 or not (is_idle and session.display.overlays.handles):
         return None
     (handle,) = selected
     identities = [each.id for each in shown.clip.layer.handles]

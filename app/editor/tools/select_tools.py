@@ -7,8 +7,9 @@ from typing import Self
 from app.editor.actions import editing
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.overlay_shapes import AreaShape, LineShape, OverlayShape
+from app.editor.parts.tools import Hint
 from app.editor.project import Project
-from app.editor.session import Hint, Session
+from app.editor.session import Session
 from app.editor.tools.tool import PointerHit, Tool
 from app.motion import BoundingBox
 from app.texts import _
@@ -37,11 +38,11 @@ class SelectTool(Tool):
         selecting = cls(project=project, start=at, place=at, adds=spot.shift, has_box=has_box)
         if spot.handle is not None:
             fellows = project.layer.grouped_handles(spot.handle)
-            is_selected = spot.handle in project.selected_handles
+            is_selected = spot.handle in project.selection.handles
             chosen = (
-                project.selected_handles - fellows
+                project.selection.handles - fellows
                 if is_selected
-                else project.selected_handles | fellows
+                else project.selection.handles | fellows
             )
             editing.select_handles(session, chosen)
         return selecting
@@ -62,7 +63,7 @@ class SelectTool(Tool):
             if box.contains(BoundingBox(complex(at), complex(at)), slack=0.0)
         }
         editing.select_handles(
-            session, project.selected_handles | inside if self.adds else frozenset(inside)
+            session, project.selection.handles | inside if self.adds else frozenset(inside)
         )
 
     def shapes(self, _place: complex, _em: float) -> Iterable[OverlayShape]:
@@ -96,7 +97,7 @@ class PickLayerTool(Tool):
         layer = _pressed_other_layer(project, spot)
         if layer is None:
             return None
-        choosing = cls(project=project, last=project.active)
+        choosing = cls(project=project, last=project.selection.active)
         set_active_layer(session, layer)
         return choosing
 
@@ -109,4 +110,4 @@ def _pressed_other_layer(project: Project, spot: PointerHit) -> int | None:
     """Return the layer that a press selects, if it is not the active layer."""
     if spot.handle is not None or spot.on_ring or spot.ctrl or spot.shift:
         return None
-    return None if spot.layer in {None, project.active} else spot.layer
+    return None if spot.layer in {None, project.selection.active} else spot.layer

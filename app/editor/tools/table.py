@@ -43,10 +43,10 @@ def pointed_tool(session: Session, project: Project, spot: PointerHit) -> type[T
 
 def tools_of(session: Session) -> tuple[type[Tool], ...]:
     """Return the tools of the present mode: cut out, set up a motion, move, or pose."""
-    if session.project is not None and session.project.motion_setup is not None:
+    if session.tools.motion_setup is not None:
         return JOINT_TOOLS
-    if session.cutting is not None:
+    if session.tools.is_cutting:
         return CUTTING_TOOLS
-    if session.material is not None:
+    if session.tools.stiffness_tool is not None:
         return STIFFNESS_TOOLS
-    return MOVING_TOOLS if session.moves else TOOLS
+    return MOVING_TOOLS if session.tools.mode == "move" else TOOLS

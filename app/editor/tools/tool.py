@@ -10,8 +10,9 @@ import numpy as np
 from app.document import KeysByChannel
 from app.editor.actions import editing
 from app.editor.overlay_shapes import Cursor, OverlayShape
+from app.editor.parts.tools import CLICK, Hint
 from app.editor.project import Project
-from app.editor.session import CLICK, Hint, Session
+from app.editor.session import Session
 from app.motion import DisplayedFrame
 from engine.arrays import Complexes
 
@@ -58,7 +59,7 @@ class Tool(ABC):
     before: SelectionSnapshot = field(init=False)
 
     def __post_init__(self) -> None:
-        self.before = SelectionSnapshot(self.project.selected_handles, self.project.selected_keys)
+        self.before = SelectionSnapshot(self.project.selection.handles, self.project.selection.keys)
 
     @classmethod
     def mode(cls, _session: Session, _project: Project) -> str:
@@ -93,10 +94,7 @@ class Tool(ABC):
 
     def cancel(self, session: Session) -> None:
         """Undo the tool's edits, and restore the selection."""
-        self.project.selected_handles, self.project.selected_keys = (
-            self.before.handles,
-            self.before.keys,
-        )
+        self.project.selection.restore(self.before.handles, self.before.keys)
         editing.revert_gesture(session, self)
 
     def shapes(self, _place: complex, _em: float) -> Iterable[OverlayShape]:
@@ -110,7 +108,7 @@ class Tool(ABC):
 
     def is_away(self, session: Session, start: complex, place: complex) -> bool:
         """Return whether the pointer has moved farther than in a click."""
-        return abs(place - start) * self.project.view(session.screen).scale > CLICK
+        return abs(place - start) * self.project.view_on(session.display.screen).scale > CLICK
 
 
 def to_scene(project: Project, place: complex) -> complex:

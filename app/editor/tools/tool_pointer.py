@@ -11,7 +11,7 @@ def press_pointer(session: Session, project: Project, spot: PointerHit) -> None:
     """Pass a press to the first tool that takes it."""
     if project.layer_runtime.shown is not None:
         gestures = (tool.press(session, project, spot) for tool in tools_of(session))
-        session.active_tool = next((gesture for gesture in gestures if gesture is not None), None)
+        session.tools.begin(next((gesture for gesture in gestures if gesture is not None), None))
 
 
 def move_pointer(session: Session, place: complex) -> None:
@@ -25,15 +25,15 @@ def move_pointer_in_steps(session: Session, place: complex) -> None:
 
 
 def _move_pointer(session: Session, place: complex, *, snaps: bool) -> None:
-    if session.active_tool:
-        session.is_snapping = snaps
-        session.active_tool.move(session, place)
+    if session.tools.active:
+        session.tools.snap(snaps=snaps)
+        session.tools.active.move(session, place)
 
 
 def type_in_tool(session: Session, characters: str) -> None:
     """Pass characters typed during a drag to the active tool."""
-    if session.active_tool:
-        session.active_tool.type(session, characters)
+    if session.tools.active:
+        session.tools.active.type(session, characters)
 
 
 def release_pointer(session: Session, place: complex) -> None:
@@ -47,28 +47,28 @@ def release_pointer_forced(session: Session, place: complex) -> None:
 
 
 def _release_pointer(session: Session, place: complex, *, forces_targets: bool) -> None:
-    gesture, session.active_tool = session.active_tool, None
+    gesture = session.tools.end()
     if gesture:
-        session.is_forcing_targets = forces_targets
+        session.tools.force_targets(forces=forces_targets)
         gesture.end(session, place)
 
 
 def cancel_tool(session: Session) -> None:
     """Cancel the active tool, and undo its edits."""
-    gesture, session.active_tool = session.active_tool, None
+    gesture = session.tools.end()
     if gesture:
         gesture.cancel(session)
 
 
 def hover_handle(session: Session, handle: int | None) -> None:
     """Note the handle under the pointer."""
-    session.hovered = handle
+    session.tools.hover(handle)
 
 
 def show_hint(session: Session, hint: str) -> None:
-    session.hint = hint
+    session.tools.show_hint(hint)
 
 
 def note_space_used(session: Session) -> None:
     """Note that Space was held to pan the view, so that its release does not play."""
-    session.is_space_used = True
+    session.tools.use_space(used=True)

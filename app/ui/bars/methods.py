@@ -20,7 +20,7 @@ def draw_method_menu(project: Project) -> list[Action]:
     imgui.separator()
     stays = project.layer.has_auto_pins
     if imgui.menu_item(_("Auto-pin handles"), "", stays)[0]:
-        command = shape_commands.set_auto_pins(project.active, enabled=not stays)
+        command = shape_commands.set_auto_pins(project.selection.active, enabled=not stays)
         actions.append(do(editing.edit_document, command))
     draw_tooltip(_("Keep handles in place between two keys with equal targets"))
     return actions

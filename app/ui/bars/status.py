@@ -61,7 +61,7 @@ def draw_status_bar(session: Session, look: Look) -> list[Action]:
     elif slowed:
         actions += _warn(session, look, slowed, RELAX_MOTION_LIMITS)
         imgui.same_line(0, gap)
-    hint = session.hint if held_back or slowed else session.hint or _("Ready")
+    hint = session.tools.hint if held_back or slowed else session.tools.hint or _("Ready")
     room = end - imgui.get_cursor_pos_x() - gap
     waiting = pending_changes.deferred_label(session.project) if session.project else ""
     exported = _export(session)
@@ -96,7 +96,7 @@ def describe_pose_limit(session: Session) -> str:
     """
     project = session.project
     shown = project.layer_runtime.shown if project else None
-    if project is None or shown is None or project.playhead.since is not None:
+    if project is None or shown is None or project.timeline.playhead.since is not None:
         return ""
     layer, correction, lags = shown.clip.layer, shown.correction, dict[int, float]()
     if shown.pose is not None:
@@ -121,7 +121,7 @@ def describe_pose_limit(session: Session) -> str:
 def describe_motion_limit(session: Session) -> str:
     """Return at which smooth keys the limits slow the motion down; else ""."""
     project = session.project
-    if project is None or project.drag is not None or project.playhead.since is not None:
+    if project is None or project.drag is not None or project.timeline.playhead.since is not None:
         return ""
     # The text changes with each result of the worker.
     known, source = project.timeline.slowed, (project.clip, session.jobs.delivered)
@@ -215,7 +215,7 @@ def list_status_items(session: Session) -> list[StatusItem]:
                 _("Time to solve the pose"),
             )
         )
-    if project is not None and project.playhead.since is not None:
+    if project is not None and project.timeline.playhead.since is not None:
         facts.append(
             StatusItem(
                 _("{rate:.0f} fps").format(rate=imgui.get_io().framerate),

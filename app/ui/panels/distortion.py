@@ -43,7 +43,7 @@ def draw_distortion_panel(session: Session, look: Look, project: Project) -> lis
     _style_plots(look)
     heading(look, _("On the drawing"))
     actions: list[Action] = []
-    heat_map = session.overlays.heat_map
+    heat_map = session.display.overlays.heat_map
     match option_buttons(look, "heat map", HEAT_MAPS, heat_map):
         case "none" | "k" | "sigma_a" | "sigma_b" as chosen:
             actions.append(do(viewing.show_heat_map, chosen))
@@ -60,7 +60,7 @@ def draw_distortion_panel(session: Session, look: Look, project: Project) -> lis
 def _compare(session: Session, look: Look) -> list[Action]:
     """Draw the choice of the compared method and of its layout in the viewport."""
     actions: list[Action] = []
-    split = session.compare_view
+    split = session.display.compare_view
     imgui.set_next_item_width(-1)
     shown = _("Nothing") if split is None else METHODS[split.method].name
     if imgui.begin_combo("##compared", shown):

@@ -36,7 +36,7 @@ PLOT_FLAGS = (
 
 def draw_distortion_curves(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    match option_buttons(look, "curves", KINDS, session.curves):
+    match option_buttons(look, "curves", KINDS, session.display.curve_kind):
         case "relative" | "absolute" as kind:
             actions.append(do(viewing.show_curves, kind))
     curves = project.curves.value
@@ -45,16 +45,16 @@ def draw_distortion_curves(session: Session, look: Look, project: Project) -> li
         return actions
     height = _plot_height(look)
     bounds = project.layer.bounds
-    upper, lower = _plots(session.curves, curves, bounds)
+    upper, lower = _plots(session.display.curve_kind, curves, bounds)
     other_upper, other_lower = None, None
     comparison, other = project.layer_runtime.comparison, project.comparison_curves
     if comparison is not None and other.value is not None:
         if other.follows(comparison.clip(project.document)):
-            other_upper, other_lower = _plots(session.curves, other.value, bounds)
+            other_upper, other_lower = _plots(session.display.curve_kind, other.value, bounds)
         _draw_comparison(look, comparison, curves, other.value)
     actions += _plot(session, look, curves, (upper, other_upper), height)
     actions += _plot(session, look, curves, (lower, other_lower), height + FRAMES * look.em)
-    if session.curves == "relative":
+    if session.display.curve_kind == "relative":
         small_text(look, _("Each point relative to its larger key. Red: theoretical limit."))
     else:
         small_text(look, _("Red: the limits of poses."))

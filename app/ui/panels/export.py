@@ -64,7 +64,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
         draw_export_preview(look, project, settings, box, motion)
     heading(look, _("Frames"))
     if EXPORT_FORMATS[settings.format].is_still:
-        now = project.playhead.frame_at(project.document, session.clock())
+        now = project.timeline.playhead.frame_at(project.document, session.clock())
         text = _("Frame {frame}, at the playhead, with the pose as it is shown.")
         small_text(look, text.format(frame=now))
     else:

@@ -65,7 +65,7 @@ def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Ac
         return draw_action_main_button(session, look, handles.suggest_handles)
     actions = _heading_with_delete(session, look, project)
     actions += _list(look, project)
-    chosen = [handle for handle in layer.handles if handle.id in project.selected_handles]
+    chosen = [handle for handle in layer.handles if handle.id in project.selection.handles]
     if len(chosen) == 1:
         actions += _details(session, look, project, chosen[0])
     elif chosen:
@@ -78,7 +78,7 @@ def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Ac
             actions += draw_track(session, look, project, layer.handle(track.handles[0]))
     else:
         small_text(look, _("Select a handle to see its settings."))
-    if len(chosen) != 1 and session.tint == "depth":
+    if len(chosen) != 1 and session.display.tint == "depth":
         actions.append(do(viewing.set_tint, None))
     heading(look, _("Anchor"))
     return actions + draw_anchor(look, project, chosen)
@@ -95,9 +95,9 @@ def _heading_with_delete(session: Session, look: Look, project: Project) -> list
         "delete handles",
         _("Delete the selected handles; the pose stays"),
         keys=_("Del"),
-        enabled=bool(project.selected_handles),
+        enabled=bool(project.selection.handles),
     ):
-        actions.append(do(remove_handles, project.selected_handles))
+        actions.append(do(remove_handles, project.selection.handles))
     return actions
 
 
@@ -125,13 +125,13 @@ def _row(look: Look, project: Project, handle: Handle, lag: float | None) -> lis
     is_anchor = handle.position == project.layer.anchor
     if imgui.selectable(
         f"###handle {handle.id}",
-        handle.id in project.selected_handles,
+        handle.id in project.selection.handles,
         imgui.SelectableFlags_.allow_overlap,
     )[0]:
         chosen = frozenset({handle.id})
         keeps = imgui.get_io().key_shift or imgui.get_io().key_ctrl
         actions.append(
-            do(editing.select_handles, project.selected_handles ^ chosen if keeps else chosen)
+            do(editing.select_handles, project.selection.handles ^ chosen if keeps else chosen)
         )
     imgui.same_line(0.8 * look.em)
     usual = icons.ICON_FA_LOCK if handle.locked else icons.ICON_FA_CIRCLE_DOT

@@ -64,7 +64,7 @@ def _libraries(
     actions: list[Action] = []
     numbered = enumerate(offers)
     for owner, group in groupby(numbered, key=lambda each: each[1].owner.id):
-        if owner != project.active:
+        if owner != project.selection.active:
             name = project.document.layer(owner).name
             name = shorten_text(name, imgui.get_content_region_avail().x - 4 * look.em)
             title = _("Of {name}").format(name=name)
@@ -73,7 +73,7 @@ def _libraries(
         imgui.push_id(owner)
         actions += _tiles(look, project, list(group), pictures)
         imgui.pop_id()
-        if owner != project.active:
+        if owner != project.selection.active:
             imgui.tree_pop()
     return actions
 
@@ -98,7 +98,7 @@ def _tiles(
         texture = pictures(owner.id, kept.pose, round(TILE * em * pixel_density()))
         actions += _tile(look, project, library.PoseOffer(owner, kept), index, texture)
         actions += _blend(look, project, library.PoseOffer(owner, kept), side)
-        if owner.id == project.active:
+        if owner.id == project.selection.active:
             taken = (other.name for other in owner.library if other is not kept)
             name = name_popup(look, "name", kept.name, taken, _("Another pose has this name."))
             if name is not None:
@@ -142,7 +142,7 @@ def _tile(
         imgui.end_drag_drop_source()
     text = _("{name}: click to use it at this frame, right-click for more")
     draw_tooltip(text.format(name=kept.name))
-    return actions + _menu(kept, owner.id, is_own=owner.id == project.active)
+    return actions + _menu(kept, owner.id, is_own=owner.id == project.selection.active)
 
 
 def _show(texture: int, low: ImVec2, high: ImVec2, rounding: float) -> None:
@@ -196,7 +196,7 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     for spec in (pasting.PASTE_FLIPPED, pasting.PASTE_SWAPPED):
         actions += draw_action_text_button(session, spec, next(widths))
     label(look, _("Axis"))
-    if imgui.checkbox("##axis", session.overlays.mirror)[0]:
+    if imgui.checkbox("##axis", session.display.overlays.mirror)[0]:
         actions.append(do(viewing.toggle_overlay, "mirror"))
     draw_tooltip(_("Show the axis in the viewport, to drag it by its grip"))
     imgui.same_line()

@@ -39,7 +39,7 @@ def _press_shortcuts(session: Session) -> list[Action]:
     If none is possible, a notice says why. Esc says nothing, since it belongs to many actions.
     """
     project, pressed, reasons = session.project, dict[int, Action](), dict[int, str]()
-    is_dragging = session.active_tool is not None or (
+    is_dragging = session.tools.active is not None or (
         project is not None and project.timeline.gesture is not None
     )
     for spec in dict.fromkeys((*ENDED_BY_ESC, *ACTIONS.values())):
@@ -69,7 +69,7 @@ def _follow_focus(session: Session) -> list[Action]:
             in_timeline = title == "Timeline"
             return (
                 [do(viewing.focus_timeline, in_timeline)]
-                if in_timeline != session.is_timeline_focused
+                if in_timeline != session.display.is_timeline_focused
                 else []
             )
     return []
@@ -95,9 +95,11 @@ def _close_menu() -> bool:
 
 
 def _nudges(session: Session) -> list[Action]:
-    if session.project is None or not (session.moves or session.project.selected_handles):
+    if session.project is None or not (
+        session.tools.mode == "move" or session.project.selection.handles
+    ):
         return []
-    nudge = move_tool.nudge_layer if session.moves else nudge_handles
+    nudge = move_tool.nudge_layer if session.tools.mode == "move" else nudge_handles
     step = 10.0 if imgui.get_io().key_shift else 1.0
     return [
         do(nudge, step * direction)

@@ -37,13 +37,13 @@ def find_manual_page(session: Session) -> str:
     if project is None:
         return START
     tools = {
-        "start": session.tutorial is not None,
-        "cut-out": session.cutting is not None,
-        "stiff": session.material is not None,
-        "ready-motions": project.motion_setup is not None,
-        "move": session.moves,
-        "record": session.records,
-        "camera": project.is_camera_view,
+        "start": session.tutorial.state is not None,
+        "cut-out": session.tools.is_cutting,
+        "stiff": session.tools.stiffness_tool is not None,
+        "ready-motions": session.tools.motion_setup is not None,
+        "move": session.tools.mode == "move",
+        "record": session.tools.mode == "record",
+        "camera": project.viewport.is_camera_view,
     }
     tabs = (page for tab, page in PAGES.items() if is_in_front(tab))
     return next((page for page, is_so in tools.items() if is_so), next(tabs, START))

@@ -56,7 +56,7 @@ def _gap(look: Look) -> None:
 
 def _transport(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    is_playing = project.playhead.since is not None
+    is_playing = project.timeline.playhead.since is not None
     for spec in TRANSPORT:
         icon = "PAUSE" if spec is playback.toggle_play and is_playing else ""
         actions += draw_action_button(session, look, spec, icon)
@@ -71,11 +71,11 @@ def _transport(session: Session, look: Look, project: Project) -> list[Action]:
 def _recording_speed(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
     imgui.set_next_item_width(4.6 * look.em)
-    if imgui.begin_combo("##recording", f"{session.recording_speed:.0%}"):
+    if imgui.begin_combo("##recording", f"{session.tools.recording_speed:.0%}"):
         actions += [
             do(set_recording_speed, speed)
             for speed in RECORDING_SPEEDS
-            if imgui.selectable(f"{speed:.0%}", speed == session.recording_speed)[0]
+            if imgui.selectable(f"{speed:.0%}", speed == session.tools.recording_speed)[0]
         ]
         imgui.end_combo()
     draw_tooltip(_("Speed of the timeline while a drag is recorded"))
@@ -173,7 +173,7 @@ def _fps(project: Project) -> list[Action]:
 
 def _speed(project: Project) -> list[Action]:
     actions: list[Action] = []
-    current = project.playhead.speed
+    current = project.timeline.playhead.speed
     if imgui.begin_combo("##speed", f"{current:g}×"):
         actions += [
             do(playback.set_playback_speed, speed)
@@ -187,7 +187,7 @@ def _speed(project: Project) -> list[Action]:
 
 def _onion_skin(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
-    overlays, preferences = session.overlays, session.settings.preferences
+    overlays, preferences = session.display.overlays, session.settings.preferences
     spec = viewing.ONION_SKIN
     hint = _("Onion skin: the poses shown before and after this frame")
     if icon_button(look, icon_glyph(spec.icon), "onion skin", hint, active=overlays.onion):

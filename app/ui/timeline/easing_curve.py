@@ -85,7 +85,7 @@ def draw_easing_popup(name: str, look: Look, project: Project, key: Keyframe) ->
     imgui.pop_style_var()
     if not is_open:
         return []
-    taken = project.keys_with(pose_channel(project.active), key.frame)
+    taken = project.selection.keys_with(pose_channel(project.selection.active), key.frame)
     count = sum(map(len, taken.values()))
     bold_text(look, _("Easing"))
     imgui.same_line()

@@ -105,7 +105,7 @@ def begin_key_drag(
     own = {channel: frozenset({frame})} if alike is None else alike
     actions = _press(bands, channel, frame, own) if is_pressed() else []
     if imgui.is_item_clicked(imgui.MouseButton_.right):
-        chosen = bands.project.selected_keys
+        chosen = bands.project.selection.keys
         if not _is_chosen(bands, own):
             actions += select_lane(channel, own)
         elif channel != bands.project.channel:
@@ -115,14 +115,14 @@ def begin_key_drag(
 
 
 def _is_chosen(bands: TimelineLayout, keys: KeysByChannel) -> bool:
-    chosen = bands.project.selected_keys
+    chosen = bands.project.selection.keys
     return all(frames <= chosen.get(channel, frozenset()) for channel, frames in keys.items())
 
 
 def _press(
     bands: TimelineLayout, channel: Channel[Any], frame: int, own: KeysByChannel
 ) -> list[Action]:
-    chosen, io = bands.project.selected_keys, imgui.get_io()
+    chosen, io = bands.project.selection.keys, imgui.get_io()
     if io.key_shift:
         toggled = {each: chosen.get(each, frozenset()) ^ frames for each, frames in own.items()}
         return [do(editing.select_channel_keys, {**chosen, **toggled})]
@@ -147,7 +147,7 @@ def _press(
 def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     x, y = bands.x(key.frame), row.middle
-    chosen = key.frame in bands.project.selected_keys.get(pose_channel(row.layer.id), ())
+    chosen = key.frame in bands.project.selection.keys.get(pose_channel(row.layer.id), ())
     warns = _warning(bands, row, key)
     fill = palette.accent if chosen else warns or (palette.text if row.is_active else palette.dim)
     tangent, centre = key.shown_tangent_mode, ImVec2(x, y)

@@ -96,7 +96,7 @@ class TimelineLayout:
                 self.group_rows.append(GroupRow(row=row, top=top, bottom=top + thin))
                 top += thin
                 continue
-            is_active = layer.id == self.project.active
+            is_active = layer.id == self.project.selection.active
             self.rows.append(
                 LayerRow(
                     layer=layer,

@@ -48,7 +48,7 @@ def draw_key_menu(bands: TimelineLayout, channel: Channel[Any], key: BaseKey) ->
     if not imgui.begin_popup(f"menu of key {key.frame}"):
         return actions
     project = bands.project
-    taken = project.keys_with(channel, key.frame)
+    taken = project.selection.keys_with(channel, key.frame)
     count = sum(map(len, taken.values()))
     delete = editing.delete_selection
     text = ngettext("Delete", "Delete {count} keys", count).format(count=count)
@@ -167,7 +167,7 @@ def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
 def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     actions += draw_action_item(session, cycles.create_cycle)
-    count, chosen = len(frames_in(project.document, project.channel)), project.selected_key_count
+    count, chosen = len(frames_in(project.document, project.channel)), project.selection.key_count
     # Scaling changes the whole scene, reversing only the active layer.
     reverse, scale = _("Reverse all keys"), _("Scale time of all keys")
     if chosen > 1:

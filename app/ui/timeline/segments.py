@@ -166,7 +166,7 @@ def _draw_bar(
 ) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     rounding = ROUNDING / 2 * em
-    chosen = bar.key.frame in bands.project.selected_frames
+    chosen = bar.key.frame in bands.project.selection.frames
     colour = palette.accent if hot or chosen else palette.dim
     if bar.key.easing == HOLD:
         draw_list.add_rect_filled(low, high, colour_u32(palette.raised, 0.35), rounding)

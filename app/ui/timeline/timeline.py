@@ -148,7 +148,7 @@ def _follow(bands: TimelineLayout, frame: int) -> list[Action]:
         return []
     strip = bands.time_view
     if timeline.gesture is None and timeline.time_range is not None:
-        is_playing = bands.project.playhead.since is not None
+        is_playing = bands.project.timeline.playhead.since is not None
         strip = strip.showing(frame, bands.width, turns=is_playing)
     return [
         do(

@@ -66,15 +66,15 @@ class Canvas:
             return
         comparisons = [runtime.comparison for runtime in project.layer_runtimes.values()]
         is_split = all(each is not None and each.shown is not None for each in comparisons)
-        is_split &= session.cutting is None
-        self._fit_targets(session.screen, 1 + is_split)
+        is_split &= not session.tools.is_cutting
+        self._fit_targets(session.display.screen, 1 + is_split)
         if self.resources is None:
             self.resources = GpuResources(self._renderer, project)
         posable = partial(self.resources.drawn_mesh, number=SMALL_PICTURE)
         self.pose_pictures.draw(session, project, posable)
         inputs = _inputs(session, project)
         if paints and inputs != self._drawn:
-            view = project.view(session.screen)
+            view = project.view_on(session.display.screen)
             scene = _scene(session, project, project.layer_runtime.shown, self.resources)
             self._renderer.draw(self._targets[0], view, scene)
             if is_split:
@@ -120,30 +120,29 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         *[
             runtime.store.whole
             for runtime in project.layer_runtimes.values()
-            if session.overlays.onion
+            if session.display.overlays.onion
         ],
         project.layer_runtime.store.sampler,
-        project.paths.value if session.overlays.paths else None,
+        project.paths.value if session.display.overlays.paths else None,
         project.parent_transforms.value,
         project.visible_drag.targets if project.visible_drag else None,
         project.selected_track,
         project.layer_runtime.corrected.count_grounds if project.layer_runtime.corrected else 0,
         project.recording,
         len(project.recording.samples) if project.recording else 0,
-        project.active,
-        project.selected_handles,
-        project.view(session.screen),
-        project.playhead.since is None,
-        session.hovered,
-        session.cutting,
-        project.motion_setup is None,
-        project.layer.cut_out if session.cutting else None,
-        session.tint,
+        project.selection.active,
+        project.selection.handles,
+        project.view_on(session.display.screen),
+        project.timeline.playhead.since is None,
+        session.tools.hovered,
+        session.tools.mode,
+        project.layer.cut_out if session.tools.is_cutting else None,
+        session.display.tint,
         project.document.layers,
         project.document.groups,
         project.document.switch_groups,
-        project.solo,
-        session.overlays,
+        project.layer_list.solo,
+        session.display.overlays,
         session.export.frame_box,
         session.settings.preferences,
         pixel_scale(session),
@@ -166,22 +165,22 @@ def _scene(
     session: Session, project: Project, shown: DisplayedFrame, drawing: GpuResources
 ) -> Scene:
     palette = PALETTES[session.settings.preferences.theme]
-    overlays = session.overlays
+    overlays = session.display.overlays
     runtimes = project.layer_runtimes.values()
     drawing.release_but({mesh for runtime in runtimes for mesh in _meshes(runtime)})
     drawing.refresh()
-    if session.cutting is not None:
+    if session.tools.is_cutting:
         scale = pixel_scale(session)
         return Scene(
             background=make_backdrop(
                 session.settings.preferences.backdrop, palette, drawing.brightness, scale
             ),
             meshes=drawing.cut_view().meshes(),
-            discs=mark_holes(project, palette, scale) if session.cutting == "holes" else (),
+            discs=mark_holes(project, palette, scale) if session.tools.mode == "holes" else (),
         )
     shows = {layer: runtime.shown for layer, runtime in project.layer_runtimes.items()}
     heat = None
-    if session.tint is not None:
+    if session.display.tint is not None:
         heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.6, two_sided=True)
     elif overlays.heat_map != "none":
         low, high = heat_limits(project, overlays.heat_map)
@@ -215,7 +214,9 @@ def _comparison_scene(
     meshes = _posed(session, project, shows, drawing, number=COMPARISON)
     comparison = replace(scene, meshes=meshes, ghosts=())
     # Handles are at the positions of the drawing's own method. Beside it they would be wrong.
-    is_beside = session.compare_view is not None and session.compare_view.is_side_by_side
+    is_beside = (
+        session.display.compare_view is not None and session.display.compare_view.is_side_by_side
+    )
     return replace(comparison, lines=(), discs=()) if is_beside else comparison
 
 
@@ -228,25 +229,29 @@ def _posed(
     number: int = 0,
 ) -> tuple[Painted, ...]:
     """Return the visible layers in the document's order: the last is in front."""
-    heat_map = session.overlays.heat_map
+    heat_map = session.display.overlays.heat_map
     poses = {}
     document = project.document
     for layer in document.layers:
         shown = shows[layer.id]
         if shown is None or not is_visible(document, layer, shown.frame):
             continue
-        if project.solo and layer.id not in project.solo:
+        if project.layer_list.solo and layer.id not in project.layer_list.solo:
             continue
         pose = drawing.drawn_mesh(layer.id, shown.mesh, number).pose(
             shown.vertices, placement=shown.placement
         )
         poses[layer.id] = pose
-        if session.tint is not None:
+        if session.display.tint is not None:
             drawing.tint(pose, _tinted(session, project, drawing, layer, shown))
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
     frame = max((shown.frame for shown in shows.values() if shown), default=0)
-    alone = without_foreign_clips(document, project.solo) if project.solo else document
+    alone = (
+        without_foreign_clips(document, project.layer_list.solo)
+        if project.layer_list.solo
+        else document
+    )
     return composite_layers(alone, poses, frame)
 
 
@@ -254,9 +259,9 @@ def _tinted(
     session: Session, project: Project, drawing: GpuResources, layer: Layer, shown: DisplayedFrame
 ) -> Floats:
     """Return the colour values of a layer's vertices, (v,), −1 to 1."""
-    if layer.id != project.active:
+    if layer.id != project.selection.active:
         return np.zeros(len(shown.positions))
-    if session.tint == "stiffness":
+    if session.display.tint == "stiffness":
         return drawing.stiffness(layer, shown.mesh)
     return shown.mesh.order.depths(shown.clip, shown.frame)
 

@@ -38,22 +38,22 @@ def mark_all(
     """Return the lines and discs that mark the shown frame, in drawing order."""
     scale = pixel_scale(session)
     lines: list[Line] = []
-    if session.overlays.outline:
+    if session.display.overlays.outline:
         lines += _outlines(shown, palette, scale)
-    if session.overlays.cage:
+    if session.display.overlays.cage:
         lines += _cages(shown, palette, scale)
     dots: tuple[Disc, ...] = ()
-    if session.overlays.paths and project.playhead.since is None:
+    if session.display.overlays.paths and project.timeline.playhead.since is None:
         path_lines, dots = _paths(session, project, palette, scale)
         lines += path_lines
-    if project.playhead.since is None or project.recording is not None:
+    if project.timeline.playhead.since is None or project.recording is not None:
         colours = to_rgba(palette.accent), to_rgba(palette.text), to_rgba(palette.desk, 0.8)
         path_lines, path_dots = mark_path(project, *colours, scale)
         lines, dots = [*lines, *path_lines], (*dots, *path_dots)
     if session.export.frame_box is not None:
         lines.append(_frame(session.export.frame_box, palette, scale))
-    is_playing = project.playhead.since is not None and project.recording is None
-    if not session.overlays.handles or is_playing or project.motion_setup is not None:
+    is_playing = project.timeline.playhead.since is not None and project.recording is None
+    if not session.display.overlays.handles or is_playing or session.tools.motion_setup is not None:
         return tuple(lines), dots
     handle_lines, discs = mark_handles(_handles(session, project, shown), scale=scale)
     anchor = find_anchor(project, shown)
@@ -70,8 +70,8 @@ def _handles(session: Session, project: Project, shown: DisplayedFrame) -> list[
             place=_on(shown, place),
             target=_on(shown, targets[handle.id]) if handle.id in targets else None,
             anchor=handle.position == layer.anchor,
-            selected=handle.id in project.selected_handles,
-            hovered=handle.id == session.hovered,
+            selected=handle.id in project.selection.handles,
+            hovered=handle.id == session.tools.hovered,
             locked=handle.locked,
         )
         for handle, place in zip(layer.handles, shown.handle_positions.tolist(), strict=True)
@@ -167,7 +167,7 @@ def find_auto_pinned(shown: DisplayedFrame) -> frozenset[int]:
 
 def _grounds(session: Session, project: Project, shown: DisplayedFrame, scale: float) -> list[Line]:
     """Return a short line below each auto-pinned handle, like a ground under its foot."""
-    per_pixel = scale / project.view(session.screen).scale
+    per_pixel = scale / project.view_on(session.display.screen).scale
     stays, lines = find_auto_pinned(shown), list[Line]()
     for handle, place in zip(
         shown.clip.layer.handles, shown.handle_positions.tolist(), strict=True
@@ -188,7 +188,7 @@ def _others(project: Project, scale: float) -> tuple[Disc, ...]:
     return tuple(
         Disc(centre=complex(place), radius=FAINT * scale, fill=(1.0, 1.0, 1.0, 0.35))
         for layer, runtime in project.layer_runtimes.items()
-        if layer != project.active and runtime.shown is not None
+        if layer != project.selection.active and runtime.shown is not None
         for place in runtime.shown.placement.apply(runtime.shown.handle_positions)
     )
 
@@ -202,7 +202,9 @@ def _frames_of_paths(session: Session, project: Project, paths: MotionPaths) -> 
     """Return which frames paths cover: the played ones, or some around the playhead."""
     played, reach = project.document.played_frames, session.settings.preferences.path_reach
     frames = (paths.frames >= played.first) & (paths.frames <= played.last)
-    return frames & (abs(paths.frames - project.playhead.frame) <= reach) if reach else frames
+    return (
+        frames & (abs(paths.frames - project.timeline.playhead.frame) <= reach) if reach else frames
+    )
 
 
 def _paths(
@@ -213,10 +215,10 @@ def _paths(
     If a parent layer has just moved, there are no paths until they are computed.
     """
     paths = project.paths.value
-    if paths is None or len(paths.frames) < 2 or paths.clip.layer.id != project.active:
+    if paths is None or len(paths.frames) < 2 or paths.clip.layer.id != project.selection.active:
         return [], ()
     frames = _frames_of_paths(session, project, paths)
-    placements = project.placed_at(project.active, paths.frames[frames].tolist())
+    placements = project.placed_at(project.selection.active, paths.frames[frames].tolist())
     if placements is None or np.count_nonzero(frames) < 2:
         return [], ()
     rows = zip(placements, paths.positions[frames], strict=True)
@@ -225,7 +227,7 @@ def _paths(
     lines, discs = [], []
     for handle, path in zip(paths.clip.layer.handles, places.T, strict=True):
         # A path that does not move would only be a blot on its handle.
-        if handle.id not in project.selected_handles or np.abs(path - path[0]).max() <= STILL:
+        if handle.id not in project.selection.handles or np.abs(path - path[0]).max() <= STILL:
             continue
         lines.append(Line(points=path, colour=to_rgba(palette.accent, 0.55), width=1.2 * scale))
         discs += [

@@ -65,7 +65,7 @@ def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int
     shown = project.layer_runtime.shown
     if shown is None:
         return []
-    if not track.is_scene_space and project.placed_at(project.active, frames) is None:
+    if not track.is_scene_space and project.placed_at(project.selection.active, frames) is None:
         return []
     targets = [track_target(project, track, frame) for frame in frames]
     # A scene-space track is independent of its layer's placement.

@@ -26,7 +26,7 @@ class ScreenMapping:
     ) -> None:
         self.project = project
         self.shown = shown
-        self.view = project.view(session.screen)
+        self.view = project.view_on(session.display.screen)
         self.density = pixel_density()
         self._corner = complex(corner.x, corner.y)
 
@@ -83,13 +83,13 @@ class ScreenMapping:
         """Return the layer under the pointer, or, `through` the active layer, the one behind."""
         if len(self.project.document.layers) == 1:
             return None
-        below = self.project.active if through else None
+        below = self.project.selection.active if through else None
         return layer_at(self.project, self._in_scene, below=below)
 
     def _is_anchor(self, handle: int | None, place: complex, reach: float) -> bool:
         """Return whether the pointer is on the anchor. A single layer has no anchor to drag."""
         project, shown = self.project, self.shown
-        if len(project.document.layers) == 1 or project.playhead.since is not None:
+        if len(project.document.layers) == 1 or project.timeline.playhead.since is not None:
             return False
         if handle is not None:
             layer = shown.clip.layer

@@ -36,8 +36,8 @@ class SplitLayout(NamedTuple):
 
 
 def divide_viewport(session: Session, corner: ImVec2, room: ImVec2) -> SplitLayout:
-    split = session.compare_view
-    if split is None or session.cutting is not None:
+    split = session.display.compare_view
+    if split is None or session.tools.is_cutting:
         return SplitLayout(corner, room, corner.x + room.x)
     if split.is_side_by_side:
         half = ImVec2(room.x / 2, room.y)
@@ -76,8 +76,8 @@ def draw_divider(session: Session, look: Look, parts: SplitLayout, room: float) 
 
     Call it before the canvas: the first item under the pointer takes the press.
     """
-    split, project = session.compare_view, session.project
-    if split is None or project is None or session.cutting is not None:
+    split, project = session.display.compare_view, session.project
+    if split is None or project is None or session.tools.is_cutting:
         return []
     actions: list[Action] = []
     x, top, height = parts.divider, parts.corner.y, parts.room.y

@@ -93,7 +93,7 @@ def draw_viewport_panel(
     if project.layer_runtime.shown is None or pictures.own is None or min(parts.room) < 1:
         return actions
     screen = ScreenMapping(session, project, project.layer_runtime.shown, corner)
-    if session.cutting is None:
+    if not session.tools.is_cutting:
         draw_camera_frame(look, project, screen, (corner, parts.room))
     # Before the canvas: the first item under the pointer takes the press. If the buttons came
     # later, the canvas or no item would take a press in the frame in which the pointer arrives.
@@ -119,14 +119,14 @@ def draw_viewport_panel(
     actions += _navigate(screen)
     actions += handles.actions
     actions += follow_pointer(session, look, screen)
-    tool = session.active_tool or pointed_tool(session, project, spot)
-    if tool is not None and tool.cursor in CURSORS and (is_over or session.active_tool):
+    tool = session.tools.active or pointed_tool(session, project, spot)
+    if tool is not None and tool.cursor in CURSORS and (is_over or session.tools.active):
         imgui.set_mouse_cursor(CURSORS[tool.cursor])
-    if handles.hovered != session.hovered:
+    if handles.hovered != session.tools.hovered:
         actions.append(do(tool_pointer.hover_handle, handles.hovered))
     draw_mirror_axis(look, axis)
     actions += _update_hint(session, screen, spot, is_over=is_over)
-    if session.tint == "stiffness" and not is_in_front("Material"):
+    if session.display.tint == "stiffness" and not is_in_front("Material"):
         actions.append(do(viewing.set_tint, None))
     if _shows_handles(session, project):
         draw_shapes(look, screen, layer_bones(project, spot.em))
@@ -139,7 +139,9 @@ def _fit(session: Session, room: ImVec2) -> list[Action]:
     """Resize the picture to the pixels of its room."""
     width, height = (max(1, round(side * pixel_density())) for side in room)
     return (
-        [] if (width, height) == session.screen else [do(viewing.set_viewport_size, width, height)]
+        []
+        if (width, height) == session.display.screen
+        else [do(viewing.set_viewport_size, width, height)]
     )
 
 
@@ -147,9 +149,9 @@ def _update_hint(
     session: Session, screen: ScreenMapping, spot: PointerHit, *, is_over: bool
 ) -> list[Action]:
     """Set the hint for the place under the pointer. No row of layers is under it."""
-    actions = [do(reset_tree_rows)] if is_over and screen.project.lingering else []
+    actions = [do(reset_tree_rows)] if is_over and screen.project.layer_list.lingering else []
     hint = find_hint(session, screen, spot) if is_over else ""
-    return actions if hint == session.hint else [*actions, do(tool_pointer.show_hint, hint)]
+    return actions if hint == session.tools.hint else [*actions, do(tool_pointer.show_hint, hint)]
 
 
 def _is_canvas_pressed() -> bool:
@@ -187,8 +189,8 @@ def _shows_handles(session: Session, project: Project) -> bool:
 
     While a motion preset is set up, its joints replace the handles.
     """
-    is_away = project.playhead.since is not None or project.motion_setup is not None
-    return session.overlays.handles and session.cutting is None and not is_away
+    is_away = project.timeline.playhead.since is not None or session.tools.motion_setup is not None
+    return session.display.overlays.handles and not session.tools.is_cutting and not is_away
 
 
 def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> _Handles:
@@ -210,9 +212,9 @@ def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> 
         if is_hovered_or_held():
             hovered, at_target = identity, what == "target"
         pressed = pressed or is_pressed()
-        if session.active_tool is None and imgui.is_item_clicked(imgui.MouseButton_.right):
+        if session.tools.active is None and imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of handle {identity}")
-            if identity not in screen.project.selected_handles:
+            if identity not in screen.project.selection.handles:
                 actions.append(do(editing.select_handles, frozenset({identity})))
     # The shown frame may predate the last edit of the layer.
     for handle in screen.project.layer.handles:
@@ -222,7 +224,7 @@ def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> 
 
 def _canvas_menu(session: Session, *, is_pointed: bool) -> list[Action]:
     """Draw the canvas menu if it is open. A right click on the canvas opens it."""
-    is_free = is_pointed and session.active_tool is None and session.cutting is None
+    is_free = is_pointed and session.tools.active is None and not session.tools.is_cutting
     if is_free and imgui.is_mouse_clicked(imgui.MouseButton_.right):
         imgui.open_popup("menu of the canvas")
     actions: list[Action] = []
@@ -243,7 +245,7 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     layer, identity = screen.project.layer, handle.id
     if not imgui.begin_popup(f"menu of handle {identity}"):
         return actions
-    chosen = screen.project.selected_handles | {identity}
+    chosen = screen.project.selection.handles | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
     item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
     if item(_("Delete"), icons.ICON_FA_TRASH, format_modified(ALT, _("click"))):

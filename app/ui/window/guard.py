@@ -197,7 +197,9 @@ def _restore(stacks: imgui.internal.ErrorRecoveryState, around: imgui.internal.W
 def _is_moving(session: Session) -> bool:
     """Return whether the shown frame changes all the time: during a drag and during playback."""
     project = session.project
-    return imgui.is_any_mouse_down() or (project is not None and project.playhead.since is not None)
+    return imgui.is_any_mouse_down() or (
+        project is not None and project.timeline.playhead.since is not None
+    )
 
 
 def _state(session: Session) -> tuple[object, ...]:
@@ -207,29 +209,48 @@ def _state(session: Session) -> tuple[object, ...]:
         *(
             session.dialogs.current,
             session.settings.preferences,
-            session.overlays,
-            session.compare_view,
-            session.tint,
+            session.display.overlays,
+            session.display.compare_view,
+            session.display.tint,
         ),
-        *(session.cutting, session.material, session.moves, session.records, session.screen),
-        *(session.export.run, session.tutorial, session.curves, bool(session.jobs.kinds), project),
+        *(
+            session.tools.mode,
+            session.display.screen,
+        ),
+        *(
+            session.export.run,
+            session.tutorial.state,
+            session.display.curve_kind,
+            bool(session.jobs.kinds),
+            project,
+        ),
     )
     if project is None:
         return own
     return (
         *own,
-        *(project.document, project.history.position, project.preview_pose, project.active),
         *(
-            project.selected_handles,
-            project.selected_channel,
-            project.other_selected_layers,
-            project.toggled_rows,
-            project.solo,
+            project.document,
+            project.history.position,
+            project.preview_pose,
+            project.selection.active,
         ),
         *(
-            project.motion_setup,
-            project.camera,
-            project.playhead,
-            tuple(project.selected_keys.items()),
+            project.document,
+            project.history.position,
+            project.history.preview_pose,
+            project.selection.active,
+        ),
+        *(
+            project.selection.handles,
+            project.selection.channel,
+            project.selection.other_layers,
+            project.layer_list.toggled_rows,
+            project.layer_list.solo,
+        ),
+        *(
+            project.viewport.view,
+            project.timeline.playhead,
+            tuple(project.selection.keys.items()),
         ),
     )

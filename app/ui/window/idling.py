@@ -36,7 +36,7 @@ class FramePace:
 def _is_busy(session: Session) -> bool:
     """Return whether something changes without input."""
     project = session.project
-    is_moving = project is not None and project.playhead.since is not None
+    is_moving = project is not None and project.timeline.playhead.since is not None
     # The system's dialog has its own input. Its answer is polled.
     asks_system = session.dialogs.uses_system and isinstance(session.dialogs.current, FileDialog)
     is_working = bool(session.jobs.kinds) or session.export.run is not None
@@ -47,7 +47,11 @@ def _is_busy(session: Session) -> bool:
 def _awaits_in_between(session: Session) -> bool:
     """Return whether a placeholder stands for an in-between, and nothing else is active."""
     project = session.project
-    if project is None or project.playhead.since is not None or session.active_tool is not None:
+    if (
+        project is None
+        or project.timeline.playhead.since is not None
+        or session.tools.active is not None
+    ):
         return False
     if (
         session.export.run is not None

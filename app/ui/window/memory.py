@@ -29,7 +29,7 @@ class FreeMemory:
         During long preparation it also runs from time to time.
         """
         session, project, now = self._session, self._session.project, self._session.clock()
-        is_playing = project is not None and project.playhead.since is not None
+        is_playing = project is not None and project.timeline.playhead.since is not None
         if has_closed:
             self._give(now)
         if session.jobs.kinds or session.export.run is not None or is_playing:

@@ -245,7 +245,8 @@ class Window:
 
     def _start(self) -> None:
         renderer = self._renderer = self._connect()
-        self.session.full_detail = not is_software(renderer.programs.context)
+        fast = not is_software(renderer.programs.context)
+        self.session.display.note_speed(full_detail=fast)
         self.session.diagnostics.note_graphics(describe_graphics(renderer.programs.context))
         self.canvas = Canvas(renderer)
         self._exporter = Exporter(renderer)

@@ -213,14 +213,16 @@ class WindowFrame:
         self._actions += collect_key_actions(self.session)
 
     def _begin_frame(self) -> None:
-        session = self.session
+        session, project = self.session, self.session.project
         self._seen, self._places = self._places, {}
         self._appearance.begin_frame()
         self._docking.begin_frame(interface_scale(session.settings.preferences.scale))
         # The tabs that show these set them again in every frame.
-        session.export.show_frame_box(None)
-        session.pointed_layer = None
-        if session.project is not None and session.project.playhead.since is not None:
+        if session.export.frame_box is not None:
+            session.export.show_frame_box(None)
+        if project is not None and project.layer_list.pointed_layer is not None:
+            project.layer_list.point_at(None)
+        if project is not None and project.timeline.playhead.since is not None:
             playback.stop_playback_at_end(session)
             # Before the panels, which read the playhead's frame.
             self._follow.run_guarded(session)
@@ -233,7 +235,7 @@ class WindowFrame:
         # A pressed pointer without a widget counts as a widget.
         widget = imgui.internal.get_active_id() or int(imgui.is_mouse_down(LEFT))
         project = self.session.project
-        if project is not None and widget != project.used_widget:
+        if project is not None and widget != self.session.tools.widget:
             self._actions.append(do(editing.note_widget_in_use, widget))
 
     def _apply_actions(self) -> None:
@@ -243,9 +245,9 @@ class WindowFrame:
             if action.verb not in UNLOGGED:
                 self.session.diagnostics.log_action(action.name)
             self.run_guarded(partial(action.apply, self.session))
-        if self.session.panel_to_focus:
-            bring_to_front(self.session.panel_to_focus)
-            self.session.panel_to_focus = ""
+        if self.session.display.panel_to_focus:
+            bring_to_front(self.session.display.panel_to_focus)
+            self.session.display.focus_panel("")
         # After the actions, so that a drag continues with the newest target, and before the picture
         # is drawn, which shows the newest result.
         self.run_guarded(self.session.jobs.deliver)
@@ -289,11 +291,7 @@ def _with_project(
     draw: Callable[[Session, Look, Project], list[Action]],
 ) -> Callable[[Session, Look], list[Action]]:
     """Return a draw function that does nothing without a project."""
-
-    def drawn(session: Session, look: Look) -> list[Action]:
-        return draw(session, look, session.project) if session.project else []
-
-    return drawn
+    return lambda session, look: draw(session, look, session.project) if session.project else []
 
 
 def _welcome(session: Session, look: Look, previews: welcome.Previews) -> list[Action]:

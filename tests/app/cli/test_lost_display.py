@@ -24,6 +24,8 @@ from app.cli import window_process
 from app.cli.main import main
 from app.document import History
 from app.document.commands import scene_commands
+from app.editor.parts.project_file import ProjectFile
+from app.editor.parts.selection import Selection
 from app.editor.project import Project
 
 class Looks:
@@ -34,8 +36,9 @@ class Looks:
     def run(self, **_):
         history = History(disc_document(), saved=True)
         history.do(scene_commands.add_marker(0, "unsaved"))
+        file, selection = ProjectFile(name="disc"), Selection(active=0)
         self.session.project = Project(
-            name="disc", history=history, path=None, layer_runtimes={}, active=0
+            file=file, history=history, layer_runtimes={}, selection=selection
         )
         x11 = ctypes.CDLL("libX11.so.6")
         x11.XOpenDisplay.restype = ctypes.c_void_p

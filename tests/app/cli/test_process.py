@@ -20,6 +20,7 @@ from app.editor import error_reports
 from app.editor.actions.project_files import autosaving
 from app.editor.parts.dialogs import ProblemReport
 from app.editor.parts.project_file import ProjectFile
+from app.editor.parts.selection import Selection
 from app.editor.parts.settings import SessionSettings
 from app.editor.project import Project
 from app.editor.session import Session
@@ -148,7 +149,7 @@ class EndedWindow:
             file=ProjectFile(name="disc"),
             history=History(document, saved=True),
             layer_runtimes={},
-            active=0,
+            selection=Selection(active=0),
         )
         project.history.do(scene_commands.add_marker(0, "unsaved"))
         self.session.project = project
@@ -222,7 +223,10 @@ def test_unsaved_work_is_kept_when_the_display_is_lost(tmp_path, monkeypatch, ca
             history = History(disc_document(), saved=True)
             history.do(scene_commands.add_marker(0, "unsaved"))
             self.session.project = Project(
-                file=ProjectFile(name="disc"), history=history, layer_runtimes={}, active=0
+                file=ProjectFile(name="disc"),
+                history=history,
+                layer_runtimes={},
+                selection=Selection(active=0),
             )
             display.handler(None)
             assert list(tmp_path.rglob("unsaved-*.lissom"))

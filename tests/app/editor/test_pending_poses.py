@@ -73,7 +73,7 @@ def test_undo_of_an_unfinished_drag_can_be_redone(session):
 
 
 def test_duplicate_of_a_dragged_layer_has_its_pose_at_rest(session):
-    project, original = session.project, session.project.active
+    project, original = session.project, session.project.selection.active
     drag = begun_drag(session)
     duplicate_layer(session, original)
     delete_layers(session, original)

@@ -23,16 +23,16 @@ def session(tmp_path):
 def test_playhead_goes_to_both_ends_of_what_plays(session):
     playback.seek(session, 20)
     playback.go_to_start(session)
-    assert session.project.playhead.frame == 10
+    assert session.project.timeline.playhead.frame == 10
     playback.go_to_end(session)
-    assert session.project.playhead.frame == 30
+    assert session.project.timeline.playhead.frame == 30
 
 
 def test_hand_on_a_track_comes_first_only_while_it_drags(session, monkeypatch):
     project = session.project
     monkeypatch.setattr(type(project), "selected_track", 0)
     assert not is_track_drag_pending(session, project)
-    session.active_tool = object()
+    session.tools.active = object()
     assert is_track_drag_pending(session, project)
     monkeypatch.setattr(type(project), "selected_track", None)
     assert not is_track_drag_pending(session, project)

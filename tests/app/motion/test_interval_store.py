@@ -425,7 +425,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     session = session_of(document, tmp_path, prepares_ahead=True)
     project, store = session.project, session.project.layer_runtime.store
     assert streamed(store, clip) == [True] * 3
-    project.playhead = project.playhead.seek(13, 0.0)
+    project.timeline.playhead = project.timeline.playhead.seek(13, 0.0)
     settle(session)
     assert isinstance(project.layer_runtime.shown.vertices, StreamedVertices)
     assert store.build is None

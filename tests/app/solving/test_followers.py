@@ -204,7 +204,7 @@ def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
     bent = drag(MIDDLE, 8j)
     assert abs(bent[MIDDLE] - again[MIDDLE] - 8j) < 2
     # So do the arrow keys.
-    project.selected_handles = frozenset({MIDDLE})
+    project.selection.handles = frozenset({MIDDLE})
     nudge_handles(session, 5j)
     settle(session)
     nudged = places(project.layer, project.layer.keys[0].pose)

@@ -36,7 +36,7 @@ BRUSH = {"smaller brush", "larger brush", "pose"}
 
 def drag_handle(session):
     tool_pointer.press_pointer(session, PointerHit(place=0j, handle=1))
-    assert session.active_tool is not None
+    assert session.tools.active is not None
 
 
 # The actions that a state makes possible, and those that it makes impossible.
@@ -123,7 +123,7 @@ def test_esc_ends_one_thing_at_a_time(window):
     for _ in range(3):
         window.run(lambda robot: robot.key_press(imgui.Key.escape))
         window.frames(2)
-        recorded.append((session.moves, bool(session.project.selected_handles)))
+        recorded.append((session.tools.mode == "move", bool(session.project.selection.handles)))
     assert recorded == [(False, True), (False, False), (False, False)]
 
 
@@ -133,8 +133,8 @@ def test_an_arrow_nudges_and_does_not_go_to_a_key(window):
     playback.scrub(session, 6)
     editing.select_handles(session, frozenset({1}))
     window.run(lambda robot: robot.key_press(imgui.Key.up_arrow))
-    assert session.project.playhead.frame == 6
+    assert session.project.timeline.playhead.frame == 6
     editing.select_handles(session, frozenset())
     window.run(lambda robot: robot.key_press(imgui.Key.up_arrow))
     window.frames(2)
-    assert session.project.playhead.frame == 24
+    assert session.project.timeline.playhead.frame == 24

@@ -39,7 +39,9 @@ def come(monkeypatch, window, bent):
     monkeypatch.setattr(window.session.jobs, "deliver", lambda: None)
     pose = bent.layer.key(LAST).pose
     turned = replace(pose, phi=TURN * pose.phi, psi=pose.psi / TURN)
-    editing.edit_document(window.session, key_commands.replace_key_pose(bent.active, LAST, turned))
+    editing.edit_document(
+        window.session, key_commands.replace_key_pose(bent.selection.active, LAST, turned)
+    )
     playback.scrub(window.session, FRAME)
     window.frames(2)
     assert bent.layer_runtime.shown.placeholder in [key.pose for key in bent.layer.keys]
@@ -60,7 +62,7 @@ def in_between(project):
 
 def pixel(window, project):
     """Return how far a pixel of the screen is in the picture: pointers are at whole ones."""
-    return 1.5 / project.view(window.session.screen).scale
+    return 1.5 / project.view_on(window.session.display.screen).scale
 
 
 def drag(robot, window, project):
@@ -109,7 +111,7 @@ def test_neither_a_drag_that_is_over_nor_steps_are_lost(window, bent, come):
         robot.mouse_up(0)
 
     window.run(play)
-    bent.selected_handles = frozenset({1})
+    bent.selection.handles = frozenset({1})
     for _ in range(3):
         window.act(nudge_handles, 5j)
     assert FRAME not in bent.layer.key_frames
@@ -122,7 +124,7 @@ def test_neither_a_drag_that_is_over_nor_steps_are_lost(window, bent, come):
 
 
 def test_a_turn_goes_on_from_the_in_between(window, bent, come):
-    bent.selected_handles = frozenset({1})
+    bent.selection.handles = frozenset({1})
     window.frames(2)
 
     def turn(robot):
@@ -196,7 +198,7 @@ def test_undo_and_redo_need_not_wait(window, bent):
         pose = bent.layer.key(LAST).pose
         turned = replace(pose, phi=turn * pose.phi, psi=pose.psi / turn)
         editing.edit_document(
-            window.session, key_commands.replace_key_pose(bent.active, LAST, turned)
+            window.session, key_commands.replace_key_pose(bent.selection.active, LAST, turned)
         )
         window.settle()
     documents = bent.history.nearby

@@ -60,7 +60,7 @@ def ready(window, loose, tmp_path, monkeypatch):
     playback.scrub(window.session, 0)
     window.settle()
     copying.copy_pose_or_keys(window.session)
-    loose.selected_handles = frozenset({0})
+    loose.selection.handles = frozenset({0})
     return loose
 
 

@@ -152,7 +152,7 @@ def test_rows_buttons_and_keys_under_the_pointer(window, check):
 def test_a_pose_that_no_key_holds_and_a_cut_out(window, loose, check):
     session = window.session
     viewing.toggle_auto_key(session)
-    loose.selected_handles = frozenset({1})
+    loose.selection.handles = frozenset({1})
     nudge_handles(session, 30j)
     window.settle()
     assert loose.unkeyed_pose is not None
@@ -188,7 +188,7 @@ def test_menus_messages_and_dialogs(window, tmp_path, check):
     session = window.session
     for tone in ("info", "good", "error"):
         session.notices.show(f"A message that is {tone}.", tone=tone, details="Its details")
-    session.hint = "A hint"
+    session.tools.hint = "A hint"
     editing.select_handles(session, frozenset({0, 1}))
     check("messages")
     session.notices.toasts = []

@@ -76,7 +76,7 @@ def test_over_the_drawing_the_pose_at_the_playhead_is_copied(window, loose, play
         hand.press(COPY)
 
     message = play(copy)
-    assert loose.selected_frames == {24}
+    assert loose.selection.frames == {24}
     assert message == [f"Pose at frame {frame} copied."]
     (copied,) = window.session.clipboard.poses
     (key,) = copied.keys
@@ -96,7 +96,7 @@ def test_a_pose_that_is_copied_as_the_playhead_leaves_another_is_the_one_that_it
         hand.to_drawing()
         # Both in one frame: what is shown is still the pose before.
         playback.scrub(window.session, 0)
-        window.session.is_timeline_focused = False
+        window.session.display.is_timeline_focused = False
         hand.press(COPY)
 
     play(copy)
@@ -111,7 +111,7 @@ def test_in_the_timeline_the_chosen_keys_are_copied(window, loose, play):
         hand.press(COPY)
 
     assert play(copy) == [KEYS_COPIED.format(count=2)]
-    assert loose.selected_frames == {0, 24}
+    assert loose.selection.frames == {0, 24}
     (copied,) = window.session.clipboard.poses
     assert copied.keys == loose.layer.keys
 
@@ -175,7 +175,7 @@ def test_all_keys_of_all_layers_that_are_posed_are_chosen(window, loose, play):
     duplicate_layer(window.session, 0)
     duplicate_layer(window.session, 0)
     window.settle()
-    still = loose.active
+    still = loose.selection.active
     make_still(window.session, still)
     window.settle()
     set_active_layer(window.session, 0)
@@ -183,7 +183,7 @@ def test_all_keys_of_all_layers_that_are_posed_are_chosen(window, loose, play):
     assert play(lambda hand: (hand.to_timeline(), hand.press(ALL, COPY))) == [
         KEYS_COPIED.format(count=4)
     ]
-    assert loose.selected_keys == {pose_channel(each): {0, 24} for each in posed}
+    assert loose.selection.keys == {pose_channel(each): {0, 24} for each in posed}
 
 
 @pytest.mark.parametrize("item", ["ruler", "ground"])
@@ -191,7 +191,7 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
     window, loose, play, item
 ):
     editing.select_handles(window.session, frozenset({1}))
-    loose.selected_frames = frozenset({0, 24})
+    loose.selection.keys = {pose_channel(loose.selection.active): frozenset({0, 24})}
 
     def scrub(hand):
         hand.to_timeline(6, "ruler")
@@ -200,7 +200,7 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
         hand.robot.mouse_up(0)
 
     play(scrub)
-    assert loose.selected_frames == {0, 24}, "to look at another frame lets go of nothing"
+    assert loose.selection.frames == {0, 24}, "to look at another frame lets go of nothing"
 
     def click(hand):
         # Beyond the last key there is nothing but the ground.
@@ -208,15 +208,16 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
         hand.robot.mouse_click(0)
 
     play(click)
-    assert not loose.selected_keys
+    assert not loose.selection.keys
     if item == "ruler":
-        assert loose.selected_handles == {1}
-        assert loose.playhead.frame == 30
+        assert loose.selection.handles == {1}
+        assert loose.timeline.playhead.frame == 30
 
 
 def test_the_menu_of_a_key_copies_and_pastes_there(window, loose, play):
     editing.edit_document(
-        window.session, channel_commands.set_easing({pose_channel(loose.active): {24}}, HOLD)
+        window.session,
+        channel_commands.set_easing({pose_channel(loose.selection.active): {24}}, HOLD),
     )
     before = loose.document
 
@@ -231,7 +232,7 @@ def test_the_menu_of_a_key_copies_and_pastes_there(window, loose, play):
     use(0, "Paste")
     poses = poses_of(loose)
     assert poses[0].phi is poses[24].phi
-    assert loose.playhead.frame == 0
+    assert loose.timeline.playhead.frame == 0
     editing.undo(window.session)
     assert loose.document is before
     use(0, "Paste flipped")
@@ -256,7 +257,7 @@ def test_the_menu_of_a_place_between_keys_pastes_there(window, loose, play, item
     poses = poses_of(loose)
     assert poses.keys() == {0, frame, 24}
     assert poses[frame].phi is poses[24].phi
-    assert loose.playhead.frame == frame
+    assert loose.timeline.playhead.frame == frame
 
 
 def test_escape_deselects_after_it_has_ended_what_is_under_way(window, loose, play):
@@ -269,18 +270,18 @@ def test_escape_deselects_after_it_has_ended_what_is_under_way(window, loose, pl
         hand.robot.mouse_down(0)
         hand.robot.mouse_move_to_pos(place + ImVec2(30, 30))
         hand.press(ESCAPE)
-        assert loose.selected_handles == {0, 1}
+        assert loose.selection.handles == {0, 1}
         hand.robot.mouse_up(0)
 
     play(drag)
     assert loose.document is before
-    assert loose.selected_handles == {0, 1}
+    assert loose.selection.handles == {0, 1}
     # A menu that is open is closed first.
     play(lambda hand: (hand.click_key(24, 1), hand.press(ESCAPE)))
-    assert loose.selected_frames == {24}
+    assert loose.selection.frames == {24}
     play(lambda hand: hand.press(ESCAPE))
-    assert not loose.selected_keys
+    assert not loose.selection.keys
     editing.select_handles(window.session, frozenset({0, 1}))
     play(lambda hand: (hand.to_drawing(), hand.press(ESCAPE)))
-    assert not loose.selected_handles
+    assert not loose.selection.handles
     assert loose.document is before

@@ -94,7 +94,7 @@ def test_rows_of_layers_stay_until_the_document_changes():
     project = project_of(many_layers(), PICTURE, "crowded")
     rows = project.tree
     assert project.tree is rows
-    project.toggled_rows = frozenset({"group body"})
+    project.layer_list.toggled_rows = frozenset({"group body"})
     assert project.tree is not rows
 
 

@@ -84,7 +84,7 @@ def test_where_nothing_is_cut_out_of_a_photo_the_brush_is_offered(window, tmp_pa
         robot.item_click(f"//{TOAST}{offer.place}/{offer.label}")
 
     window.run(accept)
-    assert window.session.cutting == "remove"
+    assert window.session.tools.mode == "remove"
     window.act(cut_out_editing.set_brush_radius, 20.0)
     stroke(window, 10 + 10j, 10 + 100j)
     rest(window)
@@ -150,9 +150,9 @@ def test_alt_and_x_swap_the_brush_and_brackets_change_its_size(window, drawing):
 
     def play(robot):
         robot.key_press(keys.x)
-        assert session.cutting == "remove"
+        assert session.tools.mode == "remove"
         robot.key_press(keys.x)
-        assert session.cutting == "keep"
+        assert session.tools.mode == "keep"
         radius = cut_out_editing.brush_radius(drawing)
         robot.key_press(keys.right_bracket)
         assert cut_out_editing.brush_radius(drawing) == pytest.approx(
@@ -176,7 +176,7 @@ def test_alt_and_x_swap_the_brush_and_brackets_change_its_size(window, drawing):
         robot.key_press(keys.escape)
 
     window.run(leave)
-    assert session.cutting is None
+    assert session.tools.mode == "pose"
 
 
 def test_the_key_of_the_brush_brings_its_tab_to_the_front(window, drawing):
@@ -189,7 +189,7 @@ def test_the_key_of_the_brush_brings_its_tab_to_the_front(window, drawing):
     # To put it away brings nothing to the front.
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
     window.frames(3)
-    assert window.session.cutting is None
+    assert window.session.tools.mode == "pose"
     assert is_in_front("Handle")
 
 
@@ -206,7 +206,7 @@ def test_a_stroke_that_is_cancelled_is_none(window, drawing):
 
     window.run(play)
     assert drawing.document is before
-    assert window.session.cutting == "keep"
+    assert window.session.tools.mode == "keep"
 
 
 def test_the_pipette_takes_the_background_s_colour(window, drawing):
@@ -326,7 +326,7 @@ def test_a_click_opens_what_the_background_shows_through(window, tmp_path, colou
         )
     if first:
         window.act(cut_out_editing.toggle_cut_tool, "holes")
-    assert window.session.cutting == "holes"
+    assert window.session.tools.mode == "holes"
     for holes in (1 - first, first):
         click(window, MIDDLE + 4)
         rest(window)
@@ -510,7 +510,7 @@ def test_a_line_of_the_knife_is_shown_while_it_is_drawn_and_can_be_cancelled(win
         robot.mouse_down()
         for place in FROM_BELOW[1:]:
             robot.mouse_move_to_pos(window.point(place))
-        shown.append(window.session.active_tool.shapes(0j, 1.0))
+        shown.append(window.session.tools.active.shapes(0j, 1.0))
         robot.key_press(window.Key.escape)
         robot.mouse_up()
 

@@ -47,7 +47,7 @@ def cycling(window):
 def swing(window):
     bent = window.again(bend_bar, None, "loose")
     editing.edit_document(
-        window.session, channel_commands.copy_keys({pose_channel(bent.active): {0}}, 48)
+        window.session, channel_commands.copy_keys({pose_channel(bent.selection.active): {0}}, 48)
     )
     editing.edit_document(window.session, scene_commands.set_frames(FrameRange(0, 150)))
     editing.select_keys(window.session, frozenset({0, 24, 48}))
@@ -205,7 +205,7 @@ def test_keys_wait_before_what_repeats(window, cycling):
 
 
 def test_chosen_layers_repeat_together_in_one_step(window, cycling):
-    arm, body = cycling.active, cycling.active + 1
+    arm, body = cycling.selection.active, cycling.selection.active + 1
     editing.edit_document(window.session, layer_commands.duplicate_layer(arm))
     editing.edit_document(window.session, cycle_commands.delete_cycle(arm, 0))
     for layer in cycling.document.layers:
@@ -232,7 +232,7 @@ def test_chosen_layers_repeat_together_in_one_step(window, cycling):
 
 
 def test_a_still_picture_repeats_with_others_what_it_does_beside_its_pose(window, swinging):
-    bar, copy = swinging.active, swinging.active + 1
+    bar, copy = swinging.selection.active, swinging.selection.active + 1
     editing.edit_document(window.session, layer_commands.duplicate_layer(bar))
     window.settle()
     make_still(window.session, copy)
@@ -255,9 +255,9 @@ def test_a_still_picture_repeats_with_others_what_it_does_beside_its_pose(window
 
 def test_a_drag_on_a_track_in_a_repeat_keys_it_where_it_repeats(window, cycling):
     own = tuple(TrackKey(frame=f, place=p) for f, p in ((0, 0j), (8, 12 + 6j), (16, 0j)))
-    command = track_commands.put_track(cycling.active, Track(handles=(RIGHT,), keys=own))
+    command = track_commands.put_track(cycling.selection.active, Track(handles=(RIGHT,), keys=own))
     editing.edit_document(window.session, command)
-    cycling.selected_track = RIGHT
+    cycling.selection.select_track(cycling.layer, RIGHT)
     playback.seek(window.session, 56)
     window.settle()
     shown = complex(cycling.layer_runtime.shown.handle_positions[RIGHT])

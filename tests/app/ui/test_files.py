@@ -85,7 +85,7 @@ def test_unknown_motion_is_reported(window, project, tmp_path):
     assert any("motion that this version cannot show" in text for text in texts(window))
     window.act(preset_setup.begin_motion_setup)
     window.settle()
-    assert window.session.project.motion_setup is not None
+    assert window.session.tools.motion_setup is not None
 
 
 def test_several_dropped_pictures_become_layers(window, drop, tmp_path):
@@ -388,7 +388,9 @@ def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, projec
     target = opened.layer.keys[0].pose.targets[0]
     assert target.position == place + 20j
     assert target.unknown == unknown
-    window.act(editing.edit_document, handle_commands.move_handle(opened.active, 0, place - 5))
+    window.act(
+        editing.edit_document, handle_commands.move_handle(opened.selection.active, 0, place - 5)
+    )
     assert opened.layer.keys[0].pose.targets[0].unknown == unknown
 
 

@@ -84,14 +84,14 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
 
     playback.seek(session, 0)
     window.run(lambda robot: robot.key_press(int(window.Key.space)))
-    assert project.playhead.since is not None
+    assert project.timeline.playhead.since is not None
     window.frames(10)
     shown = {project.layer_runtime.shown.frame}
     window.frames(10)
     assert project.layer_runtime.shown.frame not in shown
     assert project.layer_runtime.shown.is_current
     window.run(lambda robot: robot.key_press(int(window.Key.space)))
-    assert project.playhead.since is None
+    assert project.timeline.playhead.since is None
 
     path = tmp_path / "bar.lissom"
     saving.write_project(session, path, None)
@@ -193,7 +193,7 @@ def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
     session = window.session
     session.settings.default_meshing = Meshing(triangles=30_000)
     project = window.open(BAR)
-    session.full_detail = False
+    session.display.full_detail = False
     window.frames(30)
     assert project.layer_runtime.shown.mesh is project.layer_runtime.fine.mesh
     playback.seek(session, 3)
@@ -329,7 +329,7 @@ def test_keys_of_the_pointer(window, bar):
         robot.key_up(int(window.Key.mod_shift))
 
     window.run(select_both)
-    assert bar.selected_handles == {0, 1}
+    assert bar.selection.handles == {0, 1}
     window.run(lambda robot: robot.key_press(int(window.Key.up_arrow)))
     window.settle()
     assert bar.document.layers[0].keys[0].pose.targets[0].position.imag > places[0].imag
@@ -354,16 +354,16 @@ def test_a_box_selects_the_handles_in_it(window, bar):
         window.run(lambda robot: drag(robot, window, start, end, key=key))
 
     span(left - 2 * side + above, left - side - above)
-    assert bar.selected_handles == set()
+    assert bar.selection.handles == set()
     span(left - side + above, left + side - above)
-    assert bar.selected_handles == {0}
+    assert bar.selection.handles == {0}
     span(right + side - above, right - side + above, window.Key.mod_shift)
-    assert bar.selected_handles == {0, 1}
+    assert bar.selection.handles == {0, 1}
     span(right + side - above, right - side + above)
-    assert bar.selected_handles == {1}
+    assert bar.selection.handles == {1}
     span(left - side + above, right + side - above)
-    assert bar.selected_handles == {0, 1}
-    assert session.active_tool is None
+    assert bar.selection.handles == {0, 1}
+    assert session.tools.active is None
     assert len(bar.layer.handles) == 2
 
 
@@ -408,7 +408,7 @@ def test_the_ring_turns_the_shape_around_the_selected_handle(window, bar):
             robot.mouse_move_to_pos(window.point(start + 1.5 * radius * swept))
         robot.mouse_up(0)
 
-    assert bar.selected_handles == {1}
+    assert bar.selection.handles == {1}
     window.run(turn)
     window.settle()
     assert turned(bar) == pytest.approx(30, abs=2)
@@ -426,7 +426,7 @@ def test_a_click_on_the_ring_changes_nothing(window, bar):
     window.run(click)
     window.settle()
     assert bar.document is before
-    assert bar.selected_handles == {1}
+    assert bar.selection.handles == {1}
 
 
 @pytest.mark.parametrize("by", ["escape", "right button"])
@@ -442,7 +442,7 @@ def test_a_drag_is_taken_back_and_the_next_one_goes_on(window, bar, by):
             robot.mouse_move_to_pos(window.point(place + reach))
             assert session.jobs.wait_until_idle()
         robot.yield_(2)
-        assert session.hint.endswith("Esc cancels")
+        assert session.tools.hint.endswith("Esc cancels")
         assert bar.document is not before
         if by == "escape":
             robot.key_press(int(window.Key.escape))
@@ -450,7 +450,7 @@ def test_a_drag_is_taken_back_and_the_next_one_goes_on(window, bar, by):
             robot.mouse_down(1)
             robot.mouse_up(1)
         assert bar.document is before
-        assert session.active_tool is None
+        assert session.tools.active is None
         robot.mouse_move_to_pos(window.point(place + 90j))
         robot.mouse_up(0)
 
@@ -458,7 +458,7 @@ def test_a_drag_is_taken_back_and_the_next_one_goes_on(window, bar, by):
         window.run(lambda robot, place=place: take_back(robot, place))
         window.settle()
         assert bar.document is before
-        assert bar.selected_handles == {1}
+        assert bar.selection.handles == {1}
         np.testing.assert_allclose(handle_places(bar)[1], start, rtol=0, atol=1e-9)
     window.run(lambda robot: drag(robot, window, start, start + 60j))
     window.settle()
@@ -501,17 +501,19 @@ def test_wheel_zooms_at_the_pointer(window, bar):
 
     window.run(zoom)
     after = window.point(place)
-    assert bar.camera is not None
+    assert bar.viewport.view is not None
     np.testing.assert_allclose([after.x, after.y], [before.x, before.y], rtol=0, atol=1.0)
 
 
 def check_fitted(window, project, lower, upper):
     """Hold the view against the box that it should fit: centred, and tight one way."""
-    view = project.view(window.session.screen)
+    view = project.view_on(window.session.display.screen)
     np.testing.assert_allclose(view.centre, (lower + upper) / 2, rtol=0, atol=0.01)
     fill = np.array([(upper - lower).real, (upper - lower).imag]) * view.scale
-    room = np.array(window.session.screen) - fill
-    np.testing.assert_allclose(room.min(), 0.16 * min(window.session.screen), rtol=0, atol=0.5)
+    room = np.array(window.session.display.screen) - fill
+    np.testing.assert_allclose(
+        room.min(), 0.16 * min(window.session.display.screen), rtol=0, atol=0.5
+    )
 
 
 def corners(points):
@@ -520,7 +522,9 @@ def corners(points):
 
 
 def move_away(window):
-    viewing.set_view(window.session, View(centre=-5000j, scale=3.0, size=window.session.screen))
+    viewing.set_view(
+        window.session, View(centre=-5000j, scale=3.0, size=window.session.display.screen)
+    )
     window.frames(2)
 
 
@@ -551,7 +555,7 @@ def test_a_camera_that_is_moved_waits_for_no_motion(window, bent):
     viewing.zoom_to_motion(window.session)
     move_away(window)
     window.settle()
-    assert bent.camera.centre == -5000j
+    assert bent.viewport.view.centre == -5000j
 
 
 def test_f_fits_the_selected_handles_or_the_shape(window, bent):
@@ -559,21 +563,21 @@ def test_f_fits_the_selected_handles_or_the_shape(window, bent):
         robot.key_press(int(window.Key.f))
 
     whole = corners(bent.layer_runtime.shown.positions)
-    bent.selected_handles = frozenset()
+    bent.selection.handles = frozenset()
     move_away(window)
     window.run(press)
     check_fitted(window, bent, *whole)
     for selected in ({1}, {0, 1}):
-        bent.selected_handles = frozenset(selected)
+        bent.selection.handles = frozenset(selected)
         move_away(window)
         window.run(press)
         places = handle_places(bent)
         chosen = corners(np.array([places[identity] for identity in selected]))
-        view = bent.view(window.session.screen)
+        view = bent.view_on(window.session.display.screen)
         np.testing.assert_allclose(view.centre, sum(chosen) / 2, rtol=0, atol=0.01)
         near = np.array([*chosen]) - view.centre
-        assert (np.abs(near.real) * view.scale < 0.5 * window.session.screen[0]).all()
-        assert (np.abs(near.imag) * view.scale < 0.5 * window.session.screen[1]).all()
+        assert (np.abs(near.real) * view.scale < 0.5 * window.session.display.screen[0]).all()
+        assert (np.abs(near.imag) * view.scale < 0.5 * window.session.display.screen[1]).all()
 
 
 def test_unsaved_changes_are_asked_about(window, bar, tmp_path):

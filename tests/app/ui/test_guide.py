@@ -26,7 +26,7 @@ class Pupil(Newcomer):
     @property
     def step(self):
         """The step that the card tells; empty where there is none."""
-        guide = self.window.session.tutorial
+        guide = self.window.session.tutorial.state
         return "" if guide is None else guide.stage
 
     def wait(self):
@@ -118,7 +118,7 @@ def test_the_giraffe_bows(window):
     export = project.document.export
     assert (export.format, export.size) == (tutorials.FORMAT, tutorials.SIZE)
     window.frames(3)
-    aim, goal = session.tutorial.handle_place, session.tutorial.target_place
+    aim, goal = session.tutorial.state.handle_place, session.tutorial.state.target_place
     pupil.tap(aim)
     assert pupil.step == "time"
     pupil.drag_playhead(0.5)
@@ -173,7 +173,7 @@ def test_whoever_does_something_else_first_is_led_from_there(window, led):
     assert "goes back" in words(window)
     window.run(lambda robot: robot.key_press(window.Key.escape))
     window.frames(2)
-    assert session.material is None
+    assert session.tools.mode == "pose"
     assert "Click on a part" in words(window)
     window.act(playback.scrub, 20)
     assert led.step == "handle", "no handle is there yet"
@@ -214,21 +214,23 @@ def test_a_guide_can_be_left_at_any_time(window):
     for place in places_of_bar(window):
         window.act(add_handle, place)
     window.settle()
-    guide, selected = session.tutorial, session.project.selected_handles
+    guide, selected = session.tutorial.state, session.project.selection.handles
     assert selected
     for step in tutorials.STEPS:
-        session.tutorial = type(guide)(project=guide.project, handles=guide.handles, stage=step)
+        session.tutorial.state = type(guide)(
+            project=guide.project, handles=guide.handles, stage=step
+        )
         # The hand is at something, so that the step stays.
         window.run(press)
         window.frames(2)
-        assert session.tutorial is None, step
-        assert session.project.selected_handles == selected, "only the guide is left"
+        assert session.tutorial.state is None, step
+        assert session.project.selection.handles == selected, "only the guide is left"
     window.run(press)
-    assert not session.project.selected_handles
-    session.tutorial = guide
+    assert not session.project.selection.handles
+    session.tutorial.state = guide
     window.frames(3)
     window.run(lambda robot: robot.item_click(f"//{NAME}###guide/###leave"))
-    assert session.tutorial is None
+    assert session.tutorial.state is None
 
 
 def test_a_drawing_that_is_not_chosen_is_not_waited_for(window, pupil):

@@ -109,7 +109,7 @@ def test_a_locked_handle_is_not_dragged_and_holds_its_place(window, bar, play):
     nudge_handles(window.session, 5j)
     window.settle()
     assert bar.document is before, "neither dragged nor turned, nudged or deleted"
-    assert bar.selected_handles == {0}, "but selected"
+    assert bar.selection.handles == {0}, "but selected"
     other = places(bar)[1]
     # Far beyond the limits: a free handle would be drawn along.
     drag(window, other, other + 0.4 * bar.document.canvas[0])
@@ -133,17 +133,17 @@ def test_a_group_is_taken_together(window, bar, play):
     window.settle()
     before = places(bar)
     drag(window, before[0], before[0] + 40j)
-    assert bar.selected_handles == {0, 1}
+    assert bar.selection.handles == {0, 1}
     moved = places(bar)
     assert_allclose([moved[i] - before[i] for i in (0, 1)], 40j, rtol=0, atol=2)
     click(window, moved[1], window.Key.mod_shift)
-    assert bar.selected_handles == frozenset()
+    assert bar.selection.handles == frozenset()
     click(window, moved[1])
-    assert bar.selected_handles == {0, 1}
+    assert bar.selection.handles == {0, 1}
     play(lambda robot: robot.item_click("**/###ungroup"))
     assert {handle.group for handle in bar.layer.handles} == {""}
     click(window, moved[1])
-    assert bar.selected_handles == {1}
+    assert bar.selection.handles == {1}
 
 
 def test_how_firmly_handles_hold_is_said_in_words(window, bar, play):
@@ -184,7 +184,7 @@ def test_partners_are_made_and_found_by_their_names(window, bar, play):
     editing.redo(window.session)
     editing.select_handles(window.session, frozenset({one.id}))
     play(lambda robot: robot.item_click("**/###mirrored"))
-    assert bar.selected_handles == {other.id}
+    assert bar.selection.handles == {other.id}
     np.testing.assert_equal(len(bar.layer.handles), 2)
 
 
@@ -197,17 +197,17 @@ def test_a_click_on_one_of_several_selected_leaves_it_alone_selected(window, loo
         robot.mouse_move_to_pos(window.point(places(loose)[1]))
         robot.mouse_down(0)
         robot.yield_(2)
-        seen.append(loose.selected_handles)
+        seen.append(loose.selection.handles)
         robot.mouse_up(0)
 
     window.run(press)
     assert seen == [{0, 1}], "until it is let go both might be dragged"
-    assert loose.selected_handles == {1}
+    assert loose.selection.handles == {1}
     assert loose.document is before
     editing.select_handles(window.session, frozenset({0, 1}))
     start = places(loose)
     drag(window, start[1], start[1] + 20 + 10j)
-    assert loose.selected_handles == {0, 1}
+    assert loose.selection.handles == {0, 1}
     targets = loose.layer.key(24).pose.targets
     for identity in (0, 1):
         assert abs(targets[identity].position - start[identity] - 20 - 10j) < 1.5
@@ -217,7 +217,7 @@ def test_a_click_on_one_of_several_selected_selects_its_group(window, loose):
     editing.select_handles(window.session, frozenset({0, 1}))
     handle_editing.group_handles(window.session)
     click(window, places(loose)[1])
-    assert loose.selected_handles == {0, 1}
+    assert loose.selection.handles == {0, 1}
 
 
 @pytest.fixture
@@ -240,10 +240,10 @@ def test_a_handle_that_has_not_arrived_is_taken_where_it_is_wanted_too(window, s
     place, target = places(short)[1], short.layer.key(24).pose.targets[1].position
     begin = target if at_target else place
     drag(window, begin, begin + WAY)
-    assert short.selected_handles == {1}
+    assert short.selection.handles == {1}
     assert (
         abs(short.layer.key(24).pose.targets[1].position - begin - WAY)
-        < 2 / short.view(window.session.screen).scale
+        < 2 / short.view_on(window.session.display.screen).scale
     )
     editing.undo(window.session)
     assert short.layer.key(24).pose.targets[1].position == target
@@ -254,7 +254,7 @@ def test_where_a_handle_is_wanted_it_is_selected_and_has_its_menu(window, short)
     editing.select_handles(window.session, frozenset({0}))
     target = short.layer.key(24).pose.targets[1].position
     click(window, target)
-    assert short.selected_handles == {1}
+    assert short.selection.handles == {1}
     assert short.document is before
 
     def lock(robot):
@@ -272,4 +272,4 @@ def test_a_handle_is_taken_only_where_something_is_seen_of_it(window, short):
     pin_selected_handles(window.session)
     window.settle()
     click(window, target)
-    assert not short.selected_handles
+    assert not short.selection.handles

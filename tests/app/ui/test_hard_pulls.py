@@ -38,7 +38,7 @@ def drag(window, bar, way, *, key=None):
         robot.mouse_move_to_pos(window.point(start + way / 2))
         robot.mouse_move_to_pos(window.point(start + way))
         robot.yield_(2)
-        assert "to keep the target where the pointer is" in window.session.hint
+        assert "to keep the target where the pointer is" in window.session.tools.hint
         if key is not None:
             robot.key_down(int(key))
         robot.mouse_up(0)

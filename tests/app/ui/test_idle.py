@@ -97,7 +97,7 @@ def test_changed_look_of_a_layer_starts_no_job_of_its_motion(window, bent, monke
     window.settle()
     jobs, add = [], Jobs.add
     monkeypatch.setattr(Jobs, "add", lambda queue, job: (jobs.append(job.kind), add(queue, job)))
-    window.act(editing.edit_document, LOOKS[look](bent.active))
+    window.act(editing.edit_document, LOOKS[look](bent.selection.active))
     window.settle()
     assert jobs == []
     # The queue is watched: a key of a pose starts jobs.

@@ -98,7 +98,7 @@ def drag(window, scene):
             start = find_anchor(scene, shown)
             start = shown.handle_positions[0] if start is None else start
             robot.mouse_move_to_pos(window.point(complex(start)))
-            hints.append(window.session.hint)
+            hints.append(window.session.tools.hint)
             if key is not None:
                 robot.key_down(int(key))
             robot.mouse_down(0)
@@ -107,7 +107,7 @@ def drag(window, scene):
                     window.point(scene.layer_runtime.shown.placement.apply_inverse(place))
                 )
                 robot.yield_(3)
-                hints.append(window.session.hint)
+                hints.append(window.session.tools.hint)
             if gives_up:
                 robot.key_press(int(window.Key.escape))
             robot.mouse_up(0)
@@ -186,7 +186,7 @@ def test_the_layer_under_the_pointer_is_marked(window, scene):
 def test_esc_and_a_drop_beside_all_layers_leave_it_as_it_was(window, scene, drag):
     before = scene.document
     drag(HIP, SHOULDER, gives_up=True)
-    assert window.session.active_tool is None
+    assert window.session.tools.active is None
     drag(HIP, BESIDE)
     assert scene.document is before
     assert "over another layer" in window.session.notices.toasts[-1].text
@@ -353,7 +353,7 @@ def test_joints_of_an_earlier_document_are_not_used(window, swung):
     editing.edit_document(window.session, key_commands.replace_key_pose(layer.id, 0, pose))
     assert swung.parent_transforms.value is joints
     assert swung.placements([0], IDENTITY_MOTION) == [IDENTITY_MOTION]
-    assert swung.placed_at(swung.active, [0]) is None
+    assert swung.placed_at(swung.selection.active, [0]) is None
     assert ways(window, swung) == [], "a way at a place where its layer is no more"
     window.settle()
     (now,) = ways(window, swung)
@@ -378,7 +378,7 @@ def ghosts_of(window):
     """Return the picture without and with ghosts, as the viewport shows them."""
     pictures = []
     for onion in (False, True):
-        if window.session.overlays.onion != onion:
+        if window.session.display.overlays.onion != onion:
             window.act(viewing.toggle_overlay, "onion")
         window.settle()
         pictures.append(np.asarray(window.picture()).astype(int)[..., :3])
@@ -487,7 +487,7 @@ def test_motion_path_stays_at_its_parent_during_a_drag(window, swung):
     window.settle()
     (way,) = ways(window, swung)
     (handle,) = swung.layer.handles
-    layer = swung.document.layer(swung.active)
+    layer = swung.document.layer(swung.selection.active)
     other = replace(layer, handles=(replace(handle, weight=2.0),))
     swung.history.do(Command("Weigh", lambda document: document.with_layer(other)), gesture=None)
     assert swung.current_parent_transforms is None

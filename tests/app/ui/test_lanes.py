@@ -237,7 +237,7 @@ def test_a_key_is_dragged(window, project, play, channel):
     assert frames_in(after, channel) == {*start_of(channel), 10, LATE}
     assert value_of(after, channel, 10) == value_of(before, channel, EARLY)
     assert changed(before, after) == {channel}
-    assert project.selected_keys == {channel: {10}}
+    assert project.selection.keys == {channel: {10}}
     assert project.history.undo_label == "Move keys"
     # A key stops before the next one.
     after = play(lambda hand: hand.drag(channel, 10, LATE))
@@ -285,7 +285,7 @@ def test_drag_is_one_undo_step_when_its_lane_vanishes(window, project, play):
 def test_a_click_on_a_key_selects_it_and_shows_its_frame(window, project, play, channel):
     before = project.document
     play(lambda hand: hand.click(channel, LATE))
-    assert project.selected_keys == {channel: {LATE}}
+    assert project.selection.keys == {channel: {LATE}}
     assert project.channel == channel
     assert playback.current_frame(window.session, project) == LATE
     assert project.document is before
@@ -297,7 +297,7 @@ def test_ctrl_drag_copies_a_key(window, project, play, channel):
     after = play(lambda hand: hand.drag(channel, LATE, 30, window.Key.mod_ctrl))
     assert frames_in(after, channel) == {*start_of(channel), EARLY, LATE, 30}
     assert value_of(after, channel, 30) == value_of(before, channel, LATE)
-    assert project.selected_keys == {channel: {30}}
+    assert project.selection.keys == {channel: {30}}
     window.act(editing.undo)
     assert project.document is before
 
@@ -331,7 +331,7 @@ def test_a_copied_key_is_pasted_at_the_playhead(window, project, play, channel):
     assert frames_in(after, channel) == {*start_of(channel), EARLY, LATE, 30}
     assert value_of(after, channel, 30) == value_of(before, channel, EARLY)
     assert changed(before, after) == {channel}
-    assert project.selected_keys == {channel: {30}}
+    assert project.selection.keys == {channel: {30}}
     window.act(editing.undo)
     assert project.document is before
 
@@ -344,7 +344,7 @@ def test_copied_key_is_pasted_into_all_repeats(window, project, channel):
     playback.seek(window.session, LAST + 12)
     window.act(paste_copied)
     assert frames_in(project.document, channel) == {EARLY, 12, LATE}
-    assert project.selected_keys == {channel: {12}}
+    assert project.selection.keys == {channel: {12}}
 
 
 @pytest.mark.parametrize("kind", [TRANSFORM, OPACITY], ids=lambda kind: kind.name)
@@ -402,8 +402,8 @@ def test_a_box_over_lanes_of_several_kinds_selects_keys_that_move_together(windo
         hand.box((9, 20), (lowest + 3, hand.place(MARKS, LATE).y))
 
     play(box)
-    assert project.selected_keys == {each: {LATE} for each in project.selected_keys}
-    inside = set(project.selected_keys)
+    assert project.selection.keys == {each: {LATE} for each in project.selection.keys}
+    inside = set(project.selection.keys)
     assert {*OWN, JOINTS, SHOTS, MARKS} <= inside
     after = play(lambda hand: hand.drag(Channel(OPACITY, FIRST), LATE, 22))
     for channel in ALL:
@@ -421,7 +421,7 @@ def test_all_keys_are_deleted_but_the_first_pose_key_of_each_layer(window, proje
     def delete(hand):
         hand.robot.mouse_move("**/ruler")
         hand.press(window.Key.mod_ctrl, window.Key.a)
-        assert project.selected_keys == all_keys(before)
+        assert project.selection.keys == all_keys(before)
         hand.press(window.Key.delete)
 
     after = play(delete)
@@ -438,7 +438,7 @@ def test_a_folded_layer_shows_all_of_its_keys_by_marks(window, project, play):
     play(lambda hand: hand.robot.item_click(f"**/fold {FIRST}"))
     mark = f"**/row {FIRST}/keys {EARLY}"
     play(lambda hand: hand.robot.item_click(mark))
-    assert project.selected_keys == dict.fromkeys((*OWN, JOINTS), frozenset({EARLY}))
+    assert project.selection.keys == dict.fromkeys((*OWN, JOINTS), frozenset({EARLY}))
     assert playback.current_frame(window.session, project) == EARLY
 
     def drag(hand):
@@ -448,7 +448,7 @@ def test_a_folded_layer_shows_all_of_its_keys_by_marks(window, project, play):
 
     after = play(drag)
     assert changed(before, after) == {*OWN, JOINTS}
-    assert project.selected_keys == {each: {10} for each in (*OWN, JOINTS)}
+    assert project.selection.keys == {each: {10} for each in (*OWN, JOINTS)}
     window.act(editing.undo)
     assert project.document is before
 
@@ -574,7 +574,7 @@ def test_all_keys_move_together(window, project, play):
     assert all_keys(after) == {
         channel: {frame + 3 for frame in frames} for channel, frames in all_keys(before).items()
     }
-    assert project.selected_keys == all_keys(after)
+    assert project.selection.keys == all_keys(after)
     window.act(editing.undo)
     assert project.document is before
 
@@ -625,7 +625,7 @@ def test_selected_keys_of_all_kinds_are_reversed_and_scaled(window, project, pla
             assert value_at(after, channel, EARLY) == value_at(before, channel, LATE)
         assert all_keys(after) == all_keys(before)
     else:
-        assert project.selected_keys == dict.fromkeys(chosen, frozenset({EARLY, 12}))
+        assert project.selection.keys == dict.fromkeys(chosen, frozenset({EARLY, 12}))
     window.act(editing.undo)
     assert project.document is before
 

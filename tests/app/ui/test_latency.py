@@ -164,7 +164,8 @@ def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant,
             check()
 
     window.act(
-        editing.edit_document, channel_commands.copy_keys({pose_channel(bent.active): {0}}, 48)
+        editing.edit_document,
+        channel_commands.copy_keys({pose_channel(bent.selection.active): {0}}, 48),
     )
     window.settle()
     for end in ends:
@@ -179,5 +180,8 @@ def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant,
         on(playback.stop_playback)
         on(editing.undo)
         on(editing.redo)
-    on(editing.edit_document, channel_commands.delete_keys({pose_channel(bent.active): {48}}))
+    on(
+        editing.edit_document,
+        channel_commands.delete_keys({pose_channel(bent.selection.active): {48}}),
+    )
     on(playback.scrub, 12)

@@ -149,7 +149,7 @@ def test_the_list_of_layers(window, scene):
             window.frames(3)
 
     click(f"row {body}")
-    assert scene.active == body
+    assert scene.selection.active == body
     click("raise")
     assert names() == ["wall", "arm", "body"]
     click("lower", "copy layer")
@@ -273,8 +273,8 @@ def test_a_layer_is_named_by_a_double_click_by_f2_and_from_its_menu(window, scen
 
     listed(by_menu)
     assert scene.document.layer(body).name == "torso"
-    assert scene.active == arm
-    assert window.session.named_layer is None
+    assert scene.selection.active == arm
+    assert window.session.project.layer_list.named_layer is None
     for _ in range(2):
         window.act(editing.undo)
     assert scene.document.layer(body).name == "body"
@@ -320,7 +320,7 @@ def test_a_layer_is_seen_at_once_where_its_in_betweens_are_not_there_yet(window,
     assert not window.session.notices.toasts
     assert keyed.layer_runtime.shown is not None
     assert keyed.layer.name == "arm copy"
-    window.act(delete_layers, keyed.active)
+    window.act(delete_layers, keyed.selection.active)
     window.act(editing.undo)
     assert all(runtime.shown is not None for runtime in keyed.layer_runtimes.values())
 
@@ -515,7 +515,7 @@ def test_depth_is_set_at_a_handle_and_shown_as_a_tint(window, scene):
         for item in ("##depth", "##name"):
             robot.mouse_move(f"Handle/{item}")
             robot.yield_(3)
-            tinted.append(window.session.tint == "depth")
+            tinted.append(window.session.display.tint == "depth")
 
     window.run(point)
     assert tinted == [True, False]
@@ -551,7 +551,7 @@ class Rows:
         robot.set_ref("###Timeline")
         arm = identity(project, "arm")
         begin, end = self.place("arm", f"key {ARM[0]}"), self.place("arm", f"key {ARM[-1]}")
-        assert project.active == arm
+        assert project.selection.active == arm
         self._origin, self._step = begin.x, (end.x - begin.x) / ARM[-1]
 
     def name(self, layer, item):
@@ -595,15 +595,15 @@ def play(window, keyed):
 def test_a_key_of_another_row_chooses_its_layer(window, keyed, play):
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
     play(lambda rows: rows.click("body", "key 18"))
-    assert keyed.active == body
-    assert keyed.selected_keys == {pose_channel(body): {18}}
+    assert keyed.selection.active == body
+    assert keyed.selection.keys == {pose_channel(body): {18}}
     assert playback.current_frame(window.session, keyed) == 18
     window.run(lambda robot: robot.item_click(f"###Timeline/**/name {arm}"))
-    assert keyed.active == arm
-    assert not keyed.selected_keys
+    assert keyed.selection.active == arm
+    assert not keyed.selection.keys
     # So does what is between the keys of a row.
     play(lambda rows: (rows.go_to(22, rows.place("body", "key 18").y), rows.robot.mouse_click(0)))
-    assert keyed.active == body
+    assert keyed.selection.active == body
 
 
 def test_keys_of_several_rows_are_chosen_by_a_box_and_move_together(window, keyed, play):
@@ -615,13 +615,13 @@ def test_keys_of_several_rows_are_chosen_by_a_box_and_move_together(window, keye
         rows.box((8, top), (21, bottom))
 
     play(box)
-    assert keyed.active == arm
-    assert keyed.selected_keys == {pose_channel(arm): {12}, pose_channel(body): {18}}
+    assert keyed.selection.active == arm
+    assert keyed.selection.keys == {pose_channel(arm): {12}, pose_channel(body): {18}}
     # Taken by the one of the row that was not active.
     play(lambda rows: rows.drag("body", "key 18", 22))
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 16, 24), (0, 22))
-    assert keyed.selected_keys == {pose_channel(arm): {16}, pose_channel(body): {22}}
-    assert keyed.active == body
+    assert keyed.selection.keys == {pose_channel(arm): {16}, pose_channel(body): {22}}
+    assert keyed.selection.active == body
     window.act(editing.undo)
     assert keyed.document is before
     window.act(set_active_layer, arm)
@@ -643,7 +643,7 @@ def test_a_box_within_a_row_leaves_the_others_and_esc_takes_it_back(window, keye
             (8, rows.place("body", "key 18").y), (21, rows.place("body", "key 18").y)
         )
     )
-    assert keyed.selected_keys == {pose_channel(body): {18}}
+    assert keyed.selection.keys == {pose_channel(body): {18}}
     before = keyed.document
 
     def give_up(rows):
@@ -655,12 +655,12 @@ def test_a_box_within_a_row_leaves_the_others_and_esc_takes_it_back(window, keye
 
     play(give_up)
     assert keyed.document is before
-    assert keyed.selected_keys == {pose_channel(body): {18}}
+    assert keyed.selection.keys == {pose_channel(body): {18}}
     window.act(
         editing.select_channel_keys,
         {pose_channel(arm): frozenset({12, 77}), pose_channel(body): frozenset({5})},
     )
-    assert keyed.selected_keys == {pose_channel(arm): {12}}
+    assert keyed.selection.keys == {pose_channel(arm): {12}}
 
 
 def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
@@ -672,7 +672,7 @@ def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
     window.act(playback.seek, 20)
     play(lambda rows: rows.click("body", "keys 6"))
     assert playback.current_frame(window.session, keyed) == 6
-    assert keyed.active == body
+    assert keyed.selection.active == body
     window.act(set_active_layer, arm)
 
     def delete(rows):
@@ -695,7 +695,7 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
         rows.robot.menu_click("Easing/In-out")
 
     play(ease)
-    assert keyed.selected_keys == chosen
+    assert keyed.selection.keys == chosen
 
     def values_by_layer(what):
         return {
@@ -706,13 +706,13 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
 
     eased = values_by_layer(lambda key: key.easing == PRESETS["in-out"])
     assert eased == {"body": [True, False], "arm": [False, True, True]}
-    window.act(keys.set_revolutions, keyed.keys_with(pose_channel(body), 0), 2)
+    window.act(keys.set_revolutions, keyed.selection.keys_with(pose_channel(body), 0), 2)
     assert values_by_layer(lambda key: key.revolutions) == {"body": [2, 0], "arm": [0, 2, 2]}
     window.act(keys.use_next_tangent_mode)
     passed = values_by_layer(lambda key: key.tangent_mode is TangentMode.CORNER)
     assert passed == {"body": [True, False], "arm": [False, True, True]}
     # One that is not chosen is alone.
-    assert keyed.keys_with(pose_channel(body), 18) == {pose_channel(body): {18}}
+    assert keyed.selection.keys_with(pose_channel(body), 18) == {pose_channel(body): {18}}
     for _ in range(3):
         window.act(editing.undo)
     assert keyed.document is before
@@ -726,7 +726,7 @@ def test_keys_of_several_rows_run_backwards_and_are_stretched_together(window, k
     )
     window.act(keys.reverse_selected_keys)
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24), (0, 6))
-    assert keyed.selected_keys == {pose_channel(arm): {0, 24}, pose_channel(body): {6}}
+    assert keyed.selection.keys == {pose_channel(arm): {0, 24}, pose_channel(body): {6}}
     window.act(editing.undo)
     window.act(
         editing.select_channel_keys,
@@ -734,7 +734,7 @@ def test_keys_of_several_rows_run_backwards_and_are_stretched_together(window, k
     )
     window.act(keys.scale_selected_keys, 0.5)
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 18), (0, 15))
-    assert keyed.selected_keys == {pose_channel(arm): {12, 18}, pose_channel(body): {15}}
+    assert keyed.selection.keys == {pose_channel(arm): {12, 18}, pose_channel(body): {15}}
 
 
 def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keyed):
@@ -752,7 +752,7 @@ def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keye
     window.settle()
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24, 42), (0, 18, 30, 48))
     assert keyed.document.layer(arm).key(42).revolutions == 1
-    assert keyed.selected_keys == {pose_channel(arm): {42}, pose_channel(body): {30, 48}}
+    assert keyed.selection.keys == {pose_channel(arm): {42}, pose_channel(body): {30, 48}}
     window.act(editing.undo)
     assert keyed.document is before
     # The rest can be pasted where one of the layers is gone.
@@ -856,7 +856,7 @@ def test_handles_are_shown_of_the_layer_that_is_chosen_even_while_in_betweens_ar
     for runtime in scene.layer_runtimes.values():
         runtime.store.sampler = None
     before = np.asarray(window.picture()).astype(int)
-    scene.active = identity(scene, "body")
+    scene.selection.active = identity(scene, "body")
     after = np.asarray(window.picture()).astype(int)
     hand = window.point(190 + 118j)
     part = np.s_[int(hand.y) - 8 : int(hand.y) + 8, int(hand.x) - 8 : int(hand.x) + 8]
@@ -898,7 +898,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     window.act(set_active_layer, identity(posed, "body"))
     window.act(replace_picture, arm, green)
     window.settle()
-    assert posed.active == arm
+    assert posed.selection.active == arm
     layer, old = posed.document.layer(arm), before.layer(arm)
     assert posed.history.undo_label == "Replace picture"
     assert layer.picture is not old.picture
@@ -992,7 +992,7 @@ def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scen
     window.settle()
     added = scene.document.layers[-1]
     assert (added.id, added.name, added.corner) == (gone, "dot", 90 + 80j)
-    assert scene.active == added.id
+    assert scene.selection.active == added.id
     assert pixel(window, 138 + 100j) == (250, 220, 0)
 
 
@@ -1038,7 +1038,7 @@ def test_import_log_stays_in_the_panel(window, stranger):
     window.act(toast.action.apply)
     window.frames(3)
     assert is_in_front("Layers")
-    assert project.is_import_log_open
+    assert project.layer_list.is_import_log_open
 
     def fold(robot):
         robot.set_ref("Layers")
@@ -1046,10 +1046,10 @@ def test_import_log_stays_in_the_panel(window, stranger):
 
     window.run(fold)
     window.frames(3)
-    assert not project.is_import_log_open
+    assert not project.layer_list.is_import_log_open
     assert ACTIONS["import"].disabled_reason(window.session) is None
     ACTIONS["import"].action.apply(window.session)
-    assert project.is_import_log_open
+    assert project.layer_list.is_import_log_open
 
 
 def test_import_log_is_saved_and_not_shown_again(window, stranger, tmp_path):
@@ -1060,12 +1060,12 @@ def test_import_log_is_saved_and_not_shown_again(window, stranger, tmp_path):
     project = window.open(path)
     assert project.document.import_log == document.import_log != EMPTY_IMPORT_LOG
     assert not window.session.notices.toasts
-    assert not project.is_import_log_open
+    assert not project.layer_list.is_import_log_open
     window.show_tab("Handle")
     ACTIONS["import"].action.apply(window.session)
     window.frames(3)
     assert is_in_front("Layers")
-    assert project.is_import_log_open
+    assert project.layer_list.is_import_log_open
 
 
 def test_import_log_of_added_layers_is_undone_with_them(window, scene, stranger):
@@ -1115,7 +1115,7 @@ def test_layers_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(wi
     assert drawing.picture(arm) is drawing.picture(glow) is drawing.picture(shine)
     window.act(set_active_layer, glow)
     # Behind it are others with the same picture.
-    project.solo = frozenset({glow})
+    project.layer_list.solo = frozenset({glow})
     before = window.picture()
     window.act(editing.edit_document, shape_commands.cut_with_brush(glow, brush_at(project, glow)))
     window.settle()

@@ -56,7 +56,7 @@ def test_a_stroke_makes_what_it_covers_stiff_and_undo_takes_it_back(window, tab)
     stiffness = tab.layer.stiffness
     along = np.concatenate(tab.layer.domain.loops)
     near = np.abs(along.real - middle(tab).real) < 10
-    assert stiffness[near].max() == pytest.approx(window.session.strength)
+    assert stiffness[near].max() == pytest.approx(window.session.tools.strength)
     assert stiffness[np.abs(along.real - middle(tab).real) > 0.4 * np.ptp(along.real)] == (
         pytest.approx(1.0)
     )
@@ -76,11 +76,11 @@ def test_on_a_posed_drawing_the_brush_reaches_what_is_shown_there(window, tab):
     along = np.concatenate(tab.layer.domain.loops)
     softest = along[tab.layer.stiffness.argmin()]
     assert abs(softest - rest) < abs(softest - end)
-    assert tab.layer.stiffness.min() == pytest.approx(1 / window.session.strength, rel=0.3)
+    assert tab.layer.stiffness.min() == pytest.approx(1 / window.session.tools.strength, rel=0.3)
 
 
 def test_a_brush_that_reaches_no_outline_says_so(window, tab):
-    window.session.material = "stiff"
+    window.session.tools.mode = "stiff"
     tab.brush = 1.0
     stiffness_editing.paint_stiffness(window.session, [middle(tab)])
     assert tab.layer.stiffness is None
@@ -96,9 +96,9 @@ def test_a_bone_is_drawn_from_handle_to_handle(window, tab):
     drag(window, [place_of(tab, ENDS[1]), place_of(tab, ENDS[0])])
     assert len(tab.layer.bones) == 1
     assert "already" in window.session.notices.toasts[-1].text
-    assert window.session.is_posing is False
+    assert window.session.tools.is_posing is False
     move_tool.return_to_posing(window.session)
-    assert window.session.is_posing
+    assert window.session.tools.is_posing
 
 
 @pytest.mark.parametrize("way", [[0], [0, 100], [0, 100, 0, 60], [0, 0]])
@@ -127,11 +127,11 @@ def test_escape_takes_back_a_stroke_and_then_puts_the_brush_away(window, tab):
 
     window.run(act)
     assert tab.document is before
-    assert window.session.is_posing
+    assert window.session.tools.is_posing
 
 
 def test_the_drawing_is_tinted_as_long_as_the_tab_is_in_front(window, tab):
-    assert window.session.tint == "stiffness"
+    assert window.session.display.tint == "stiffness"
     stiffness_editing.toggle_stiffness_tool(window.session, "stiff")
     drag(window, [middle(tab) - 10, middle(tab) + 10])
     values = measure_vertex_stiffness(tab.layer, tab.layer_runtime.shown.mesh)
@@ -140,10 +140,10 @@ def test_the_drawing_is_tinted_as_long_as_the_tab_is_in_front(window, tab):
     assert abs(values[np.abs(vertices - vertices.real.min()).argmin()]) < 0.05
     window.show_tab("Deform")
     window.frames(2)
-    assert window.session.tint is None
+    assert window.session.display.tint is None
     viewing.set_tint(window.session, "depth")
     window.frames(2)
-    assert window.session.tint == "depth"
+    assert window.session.display.tint == "depth"
 
 
 def test_a_key_follows_the_new_material_when_it_is_posed_again(window, tab):

@@ -39,10 +39,10 @@ def on_handle(window, loose, *items):
 
 
 def test_a_handle_is_pinned_by_its_menu(window, loose):
-    assert loose.selected_handles == {1}
+    assert loose.selection.handles == {1}
     place = complex(loose.layer_runtime.shown.handle_positions[0])
     on_handle(window, loose, "Pin here")
-    assert loose.selected_handles == {0}, "what the menu is of is selected"
+    assert loose.selection.handles == {0}, "what the menu is of is selected"
     assert loose.layer.key(BENT).pose.targets[0].position == pytest.approx(place, abs=0.1)
 
 
@@ -51,7 +51,7 @@ def test_menu_of_a_handle_closes_when_the_layer_changes(window, loose):
     place = window.point(loose.layer_runtime.shown.handle_positions[1])
     window.run(lambda robot: open_menu(robot, place))
     with window.session.jobs.held():
-        fewer = handle_commands.remove_handles(loose.active, {1})(loose.document)
+        fewer = handle_commands.remove_handles(loose.selection.active, {1})(loose.document)
         (layer,) = fewer.layers
         other = replace(fewer, layers=(replace(layer, domain=replace(layer.domain)),))
         editing.edit_document(window.session, Command("Change the outline", lambda _: other))
@@ -69,7 +69,7 @@ def test_how_firmly_a_handle_holds_is_in_its_menu(window, loose):
 def test_the_depth_of_a_handle_is_in_its_menu(window, loose):
     on_handle(window, loose, "Depth", "Behind")
     assert [handle.depth for handle in loose.layer.handles] == [-1.0, 0.0]
-    channel = Channel(DEPTH, loose.active, 0)
+    channel = Channel(DEPTH, loose.selection.active, 0)
     window.act(editing.edit_document, channel_commands.set_key(channel, BENT, 0.0))
     on_handle(window, loose, "Depth", "In front")
     assert loose.layer.keys_of(DEPTH, 0) == (DEPTH.key(BENT, 1.0),)
@@ -96,7 +96,7 @@ def test_the_canvas_has_a_menu(window, loose):
 
     window.run(play)
     assert found == list(chain(*CANVAS))
-    assert window.session.moves
+    assert window.session.tools.mode == "move"
 
 
 def test_a_right_click_in_a_drag_still_takes_it_back(window, loose):

@@ -18,12 +18,9 @@ from app.ui.panel import is_in_front
 from app.ui.shortcuts.table import ACTIONS
 
 
-def draft_child(window):
-    """Open a child in a picture, and draft a motion for it."""
-    project = window.open(paint(window.folder, "child"))
-    preset_setup.begin_motion_setup(window.session)
-    window.frames(4)
-    return project
+def open_child(window):
+    """Open a child in a picture."""
+    return window.open(paint(window.folder, "child"))
 
 
 def breathing(window):
@@ -45,7 +42,11 @@ def arrive(window, project):
 
 @pytest.fixture
 def child(window):
-    return window.again(draft_child)
+    """Open a child in a picture, and draft a motion for it."""
+    project = window.again(open_child)
+    preset_setup.begin_motion_setup(window.session)
+    window.frames(4)
+    return project
 
 
 @pytest.fixture
@@ -86,16 +87,21 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     window.run(lambda robot: robot.menu_click(entry))
     window.frames(4)
     assert is_in_front("Motion")
-    assert (project.motion_setup.kind, project.motion_setup.motion) == ("biped-side", "walk")
-    foot = project.motion_setup.joints["foot.L"]
+    assert (window.session.tools.motion_setup.kind, window.session.tools.motion_setup.motion) == (
+        "biped-side",
+        "walk",
+    )
+    foot = window.session.tools.motion_setup.joints["foot.L"]
     press(window, foot, to=foot + 3)
-    assert project.motion_setup.joints["foot.L"].real == pytest.approx(foot.real + 3, abs=2)
+    assert window.session.tools.motion_setup.joints["foot.L"].real == pytest.approx(
+        foot.real + 3, abs=2
+    )
     preset_setup.set_motion_parameters(window.session, size=0.2, speed=4.0)
     assert project.document is before, "nothing is done to it yet"
     click(window, "//Motion/**/###give")
     arrive(window, project)
     assert project.layer.motions, [toast.text for toast in window.session.notices.toasts]
-    assert project.playhead.since is not None, "it plays"
+    assert project.timeline.playhead.since is not None, "it plays"
     assert project.document.loop
     (given,) = project.layer.motions
     assert given.motion == "walk"
@@ -110,33 +116,36 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
 
 def test_joints_are_dragged_left_out_and_put_back(window, child):
     before = child.document
-    hand = child.motion_setup.joints["hand.L"]
+    hand = window.session.tools.motion_setup.joints["hand.L"]
     press(window, hand, to=hand - 12)
-    assert abs(child.motion_setup.joints["hand.L"] - (hand - 12)) < 3
-    press(window, child.motion_setup.joints["elbow.L"], key=window.Key.mod_alt)
-    assert "elbow.L" not in child.motion_setup.joints
-    press(window, child.motion_setup.joints["head"])
+    assert abs(window.session.tools.motion_setup.joints["hand.L"] - (hand - 12)) < 3
+    press(window, window.session.tools.motion_setup.joints["elbow.L"], key=window.Key.mod_alt)
+    assert "elbow.L" not in window.session.tools.motion_setup.joints
+    press(window, window.session.tools.motion_setup.joints["head"])
     window.run(lambda robot: robot.key_press(int(window.Key.delete)))
-    assert "head" not in child.motion_setup.joints
+    assert "head" not in window.session.tools.motion_setup.joints
     click(window, "//Motion/**/joint head")
-    assert "head" in child.motion_setup.joints
+    assert "head" in window.session.tools.motion_setup.joints
     for _ in range(4):
         window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl | window.Key.z)))
-    assert child.motion_setup.joints["hand.L"] == hand
-    assert "elbow.L" in child.motion_setup.joints
+    assert window.session.tools.motion_setup.joints["hand.L"] == hand
+    assert "elbow.L" in window.session.tools.motion_setup.joints
     assert child.document is before
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
-    assert child.motion_setup is None
-    assert window.session.is_posing
+    assert window.session.tools.motion_setup is None
+    assert window.session.tools.is_posing
     assert child.document is before
 
 
-def test_one_side_is_mirrored_onto_the_other(window, child):
-    joints = child.motion_setup.joints
+@pytest.mark.usefixtures("child")
+def test_one_side_is_mirrored_onto_the_other(window):
+    joints = window.session.tools.motion_setup.joints
     joint_placement.move_joint(window.session, "hand.R", joints["hand.R"] + 8)
     joint_placement.mirror_joints(window.session)
-    axis = np.mean([child.motion_setup.joints[name].real for name in ("hips", "chest", "head")])
-    right, left = (child.motion_setup.joints[f"hand.{side}"] for side in "RL")
+    axis = np.mean(
+        [window.session.tools.motion_setup.joints[name].real for name in ("hips", "chest", "head")]
+    )
+    right, left = (window.session.tools.motion_setup.joints[f"hand.{side}"] for side in "RL")
     assert right.real + left.real == pytest.approx(2 * axis, abs=1)
     assert right.imag == pytest.approx(left.imag, abs=1)
 
@@ -144,16 +153,16 @@ def test_one_side_is_mirrored_onto_the_other(window, child):
 def test_missing_needs_of_a_motion_are_named(window, child):
     joint_placement.exclude_joint(window.session, "foot.R")
     window.frames()
-    assert "needs foot.R" in preset_setup.apply_motion_disabled_reason(child)
+    assert "needs foot.R" in preset_setup.apply_motion_disabled_reason(window.session, child)
     apply_motion.apply_motion_preset(window.session)
-    assert child.motion_setup is not None
+    assert window.session.tools.motion_setup is not None
     assert child.motion_job is None
     joint_placement.include_joint(window.session, "foot.R")
-    assert not preset_setup.apply_motion_disabled_reason(child)
+    assert not preset_setup.apply_motion_disabled_reason(window.session, child)
     preset_setup.set_body_kind(window.session, "anything")
-    assert child.motion_setup.motion in {"breathe", "sway", "hop"}
+    assert window.session.tools.motion_setup.motion in {"breathe", "sway", "hop"}
     preset_setup.set_body_kind(window.session, "biped-front")
-    assert "foot.R" in child.motion_setup.joints, "as they were left"
+    assert "foot.R" in window.session.tools.motion_setup.joints, "as they were left"
 
 
 def test_handles_that_are_there_are_joints(window):
@@ -161,7 +170,7 @@ def test_handles_that_are_there_are_joints(window):
     suggest_handles(window.session)
     head = next(each for each in project.layer.handles if each.name == "head")
     preset_setup.begin_motion_setup(window.session)
-    assert project.motion_setup.joints["head"] == head.position
+    assert window.session.tools.motion_setup.joints["head"] == head.position
 
 
 def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for_it(
@@ -170,7 +179,7 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
     before = ghost.document
     (given,) = ghost.layer.motions
     preset_setup.begin_motion_setup(window.session)
-    assert ghost.motion_setup.applied_motion is given
+    assert window.session.tools.motion_setup.applied_motion is given
     preset_setup.set_motion_parameters(window.session, speed=4.0)
     apply_motion.apply_motion_preset(window.session)
     ghost.file.path = tmp_path / "ghost.lissom"
@@ -196,7 +205,7 @@ def test_given_again_its_handles_go_where_joints_were_dragged(window):
     handles = {handle.name: handle.id for handle in project.layer.handles}
     playback.scrub(window.session, 0)
     preset_setup.begin_motion_setup(window.session)
-    place = project.motion_setup.joints["joint.2"] + 6
+    place = window.session.tools.motion_setup.joints["joint.2"] + 6
     joint_placement.move_joint(window.session, "joint.2", place)
     apply_motion.apply_motion_preset(window.session)
     arrive(window, project)
@@ -214,11 +223,13 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
     window.settle()
     preset_setup.begin_motion_setup(window.session)
     window.frames(3)
-    assert "edited the motion by hand" in preset_setup.apply_motion_disabled_reason(ghost)
+    assert "edited the motion by hand" in preset_setup.apply_motion_disabled_reason(
+        window.session, ghost
+    )
     apply_motion.apply_motion_preset(window.session)
     assert ghost.motion_job is None
     click(window, "//Motion/**/Replace edits")
-    assert not preset_setup.apply_motion_disabled_reason(ghost)
+    assert not preset_setup.apply_motion_disabled_reason(window.session, ghost)
 
 
 def test_another_motion_follows(window, ghost):
@@ -245,7 +256,7 @@ def test_on_its_way_it_is_given_up_and_drafted_again(window, child, how):
     else:
         editing.undo(window.session)
     assert child.motion_job is None
-    assert child.motion_setup is not None
+    assert window.session.tools.motion_setup is not None
     window.settle()
     assert child.document is before
 

@@ -35,7 +35,7 @@ def drag(window, start, way, *, keys=0):
         if keys:
             robot.key_down(keys)
         robot.yield_(3)
-        hints.append(window.session.hint)
+        hints.append(window.session.tools.hint)
         robot.mouse_down(0)
         robot.mouse_move_to_pos(window.point(start + way / 2))
         robot.mouse_move_to_pos(window.point(start + way))
@@ -58,8 +58,8 @@ def test_v_and_a_drag_and_escape(window, loose):
     assert moved(loose, before, way)
     assert loose.layer.key(0) is first
     press(window, imgui.Key.escape)
-    assert not window.session.moves
-    assert loose.selected_handles, "Escape puts one thing away at a time"
+    assert window.session.tools.mode != "move"
+    assert loose.selection.handles, "Escape puts one thing away at a time"
     editing.undo(window.session)
     assert loose.document is document
 
@@ -75,7 +75,7 @@ def test_ctrl_and_shift_from_beside(window, loose):
 
 def test_arrows_move_all_of_it_only_with_the_tool(window, loose):
     before, session = wanted(loose), window.session
-    loose.selected_handles = frozenset()
+    loose.selection.handles = frozenset()
     press(window, imgui.Key.v, imgui.Key.up_arrow, SHIFT | int(imgui.Key.left_arrow))
     assert playback.current_frame(session, loose) == BENT
     assert moved(loose, before, 1j - 10)
@@ -84,14 +84,14 @@ def test_arrows_move_all_of_it_only_with_the_tool(window, loose):
 
 
 def test_it_is_one_tool_of_several(window, loose):
-    session, chosen = window.session, loose.selected_handles
+    session, chosen = window.session, loose.selection.handles
     press(window, imgui.Key.v, imgui.Key.x)
-    assert session.cutting == "remove"
+    assert session.tools.mode == "remove"
     press(window, imgui.Key.v)
-    assert (session.cutting, session.moves) == (None, True)
+    assert session.tools.mode == "move"
     press(window, imgui.Key.v)
-    assert not session.moves
-    assert loose.selected_handles == chosen
+    assert session.tools.mode != "move"
+    assert loose.selection.handles == chosen
     press(window, imgui.Key.v)
     window.again(open_bar)
-    assert not session.moves, "another project begins with posing"
+    assert session.tools.mode != "move", "another project begins with posing"

@@ -13,7 +13,7 @@ from app.editor.overlay_shapes import (
     StrokeShape,
     TagShape,
 )
-from app.editor.session import Hint
+from app.editor.parts.tools import Hint
 from app.editor.tools import table
 from app.editor.tools.tool import Tool
 from app.ui.viewport import viewport
@@ -89,12 +89,12 @@ def test_a_new_tool_shows_its_shapes_hint_cursor_and_badge(window, drawn):
     def play(robot):
         robot.mouse_move_to_pos(place)
         robot.yield_(2)
-        texts.append(window.session.hint)
+        texts.append(window.session.tools.hint)
         pictures.append(sum(isinstance(each, CircleShape) for each in flat(drawn["shapes"])))
         robot.mouse_down()
         robot.mouse_move_to_pos(place + imgui.ImVec2(40, 10))
         robot.yield_(2)
-        texts.append(window.session.hint)
+        texts.append(window.session.tools.hint)
         robot.mouse_up()
 
     window.run(play)

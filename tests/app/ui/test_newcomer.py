@@ -18,16 +18,16 @@ def test_a_loop_takes_few_clicks_and_drags(window, tmp_path):
     first = project.document
     assert len(project.layer.handles) >= 3
     person.drag_playhead(0.5)
-    assert project.playhead.frame > 5
+    assert project.timeline.playhead.frame > 5
     handle = max(project.layer_runtime.shown.handle_positions, key=lambda place: place.real)
     person.drag(complex(handle), complex(handle) + 0.3j * project.document.canvas[1])
-    assert [key.frame for key in project.layer.keys] == [0, project.playhead.frame]
+    assert [key.frame for key in project.layer.keys] == [0, project.timeline.playhead.frame]
     assert project.layer.keys[1].pose is not first.layers[0].keys[0].pose
     person.click("//Timeline/**/Loop")
     assert project.document.loop
     person.click("//Timeline/**/Play")
     window.frames(20)
-    assert project.playhead.since is not None
+    assert project.timeline.playhead.since is not None
     person.show_tab("Export")
     session.settings.preferences = type(session.settings.preferences)(folder=tmp_path)
     person.click("//Export/**/###start")

@@ -68,7 +68,7 @@ def test_drag_goes_on_while_rough_frames_play(window, loose):
     session = window.session
     loose.layer_runtime.shown = replace(loose.layer_runtime.shown, is_approximate=True)
     assert not is_display_final(session, loose)
-    loose.playhead = loose.playhead.play(loose.document, session.clock())
+    loose.timeline.playhead = loose.timeline.playhead.play(loose.document, session.clock())
     assert is_display_final(session, loose)
     loose.layer_runtime.shown = replace(loose.layer_runtime.shown, placeholder=loose.layer.domain)
     assert not is_display_final(session, loose)
@@ -106,7 +106,7 @@ def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, loose, auto_key)
 def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, loose):
     goal = drag_bar(window, loose)
     add_handle(window.session, complex(loose.layer_runtime.shown.handle_positions.mean()))
-    (added,) = loose.selected_handles
+    (added,) = loose.selection.handles
     remove_handles(window.session, frozenset({0}))
     window.settle()
     layer, pose = loose.layer, loose.layer.key(24).pose
@@ -124,7 +124,7 @@ def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
         for identity in (0, other):
             set_active_layer(window.session, identity)
             goals[identity] = drag_bar(window, loose)
-        assert loose.active == other
+        assert loose.selection.active == other
     window.settle()
     for identity, goal in goals.items():
         check_at_rest(loose.document, goal, layer=identity)
@@ -335,7 +335,7 @@ def beside_the_axis(window, project):
     """Add a handle that has no partner, but room for one; return its id."""
     add_handle(window.session, complex(project.layer_runtime.shown.handle_positions.mean()) + 60)
     window.settle()
-    (added,) = project.selected_handles
+    (added,) = project.selection.handles
     return added
 
 
@@ -347,7 +347,7 @@ def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, l
     # Left while the solver is ahead of what the document has.
     playback.scrub(window.session, 7)
     window.frames()
-    loose.selected_handles = frozenset({added})
+    loose.selection.handles = frozenset({added})
     mirror_handles(window.session)
     assert len(loose.layer.handles) == 4, [toast.text for toast in window.session.notices.toasts]
     editing.undo(window.session)
@@ -360,7 +360,7 @@ def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(w
     before, handles = loose.document, loose.layer.handles
     with window.session.jobs.held(POSING):
         drag_bar(window, loose)
-        loose.selected_handles = frozenset({added})
+        loose.selection.handles = frozenset({added})
         mirror_handles(window.session)
         assert loose.drag is None
         editing.undo(window.session)
@@ -428,7 +428,7 @@ def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(wi
         set_targets(window.session, {0: Target(position=places[0] + 5j)})
         release_drag(window.session)
         add_handle(window.session, complex(places.mean()))
-        (added,) = loose.selected_handles
+        (added,) = loose.selection.handles
         set_targets(window.session, {1: Target(position=places[1] + 5j)})
         release_drag(window.session)
     window.settle()

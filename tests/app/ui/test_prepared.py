@@ -37,9 +37,9 @@ def test_session_prepares_ahead_by_itself(tmp_path):
 
 @pytest.mark.usefixtures("everything")
 def test_window_prepares_everything_unasked(window, bent):
-    editing.edit_document(window.session, track_commands.put_track(bent.active, TRACK))
+    editing.edit_document(window.session, track_commands.put_track(bent.selection.active, TRACK))
     window.settle()
-    assert bent.playhead.frame == bent.clip.keys[-1].frame
+    assert bent.timeline.playhead.frame == bent.clip.keys[-1].frame
     assert all(prepared(bent).values()), prepared(bent)
 
 
@@ -47,7 +47,7 @@ def test_window_of_tests_prepares_only_what_is_shown(window):
     # The tab Export asks for the extent of the motion.
     window.show_tab("Handle")
     bent = window.again(bend_bar)
-    editing.edit_document(window.session, track_commands.put_track(bent.active, TRACK))
+    editing.edit_document(window.session, track_commands.put_track(bent.selection.active, TRACK))
     window.settle()
     assert not any(prepared(bent).values()), prepared(bent)
     playback.seek(window.session, HALFWAY)

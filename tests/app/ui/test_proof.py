@@ -41,10 +41,10 @@ def test_the_places_lead_from_the_welcome_view_to_each_export(window, hand):
     session = window.session
 
     def step():
-        return session.tutorial.stage
+        return session.tutorial.state.stage
 
     hand("begin")
-    window.until(lambda: session.tutorial is not None and step() == "handle")
+    window.until(lambda: session.tutorial.state is not None and step() == "handle")
     window.frames(5)
     assert re.fullmatch(r"giraffe.* – Lissom", window_title(session))
     hand("nose")

@@ -15,7 +15,7 @@ def project(window):
     project = window.again(open_bar, 0.1)
     point(window, project, 0.1)
     window.frames(3)
-    assert window.session.hovered == 0
+    assert window.session.tools.hovered == 0
     return project
 
 
@@ -50,7 +50,7 @@ def test_it_leaves_the_canvas_for_a_handle(window, project):
     point(window, project, 0.5)
     window.frames(3)
     press(window, project, 0.1)
-    assert project.selected_handles == {0}
+    assert project.selection.handles == {0}
     assert len(project.layer.handles) == 2
 
 
@@ -59,7 +59,7 @@ def test_it_takes_the_upper_one_of_two_handles(window, project):
     add_handle(window.session, place_of(project, 0.901))
     window.frames(3)
     press(window, project, 0.9)
-    assert project.selected_handles == {2}
+    assert project.selection.handles == {2}
 
 
 def test_two_drags_in_adjacent_frames_are_two_steps(window, project):

@@ -460,17 +460,21 @@ class Walk:
                 )
             case 0:
                 name = self.choice(("paw", "tail", "x", f"{self.rng.integers(99)}"))
-                self.edit(handle_commands.rename_handle(self.project.active, handle.id, name))
+                self.edit(
+                    handle_commands.rename_handle(self.project.selection.active, handle.id, name)
+                )
             case 1:
                 weight = float(10 ** self.rng.uniform(-2, 2))
                 self.edit(
-                    handle_commands.set_handle_weight(self.project.active, {handle.id}, weight)
+                    handle_commands.set_handle_weight(
+                        self.project.selection.active, {handle.id}, weight
+                    )
                 )
             case 2:
                 outline = self.project.layer.domain.mesh.vertices
                 self.edit(
                     handle_commands.move_handle(
-                        self.project.active, handle.id, complex(self.choice(outline))
+                        self.project.selection.active, handle.id, complex(self.choice(outline))
                     )
                 )
             case 3:
@@ -481,7 +485,9 @@ class Walk:
     def set_anchor(self) -> None:
         inside = complex(self.choice(self.project.layer.domain.mesh.vertices))
         self.edit(
-            shape_commands.set_anchor(self.project.active, None if self.chance(0.5) else inside)
+            shape_commands.set_anchor(
+                self.project.selection.active, None if self.chance(0.5) else inside
+            )
         )
 
     def select(self) -> None:
@@ -626,7 +632,7 @@ class Walk:
 
     def change_onion_skin(self) -> None:
         self.act(viewing.set_onion_skin, *map(int, self.rng.integers(0, 3, 3)))
-        if not self.session.overlays.onion:
+        if not self.session.display.overlays.onion:
             self.act(viewing.toggle_overlay, "onion")
 
     def change_layers(self) -> None:
@@ -701,7 +707,10 @@ class Walk:
                 remove = self.choice((track_commands.remove_tracks, track_commands.remove_springs))
                 self.act(editing.edit_layer, remove, (handle,))
             case 7:
-                self.project.selected_track = self.choice((handle, None))
+                selection, chosen = self.project.selection, self.chance(0.5)
+                selection.select_channel(None)
+                if chosen:
+                    selection.select_track(self.project.layer, handle)
 
     def change_staging(self) -> None:
         """Let layers fade, move, take turns, or be painted in another order; and the camera."""
@@ -760,7 +769,7 @@ class Walk:
                     stiffness_editing.toggle_stiffness_tool,
                     self.choice(("stiff", "soft", "normal", "bone", None)),
                 )
-            case "paint" if self.session.material is not None:
+            case "paint" if self.session.tools.stiffness_tool is not None:
                 start = complex(*self.rng.uniform(0, self.size, 2))
                 self.act(
                     stiffness_editing.paint_stiffness, [start, start + self.rng.uniform(0, 30)]
@@ -836,7 +845,7 @@ class Walk:
 
     def some_keys(self) -> KeysByChannel:
         """Choose keys of the active layer's poses, or of all channels."""
-        poses = pose_channel(self.project.active)
+        poses = pose_channel(self.project.selection.active)
         keyed = all_keys(self.document)
         keyed = keyed if self.chance(0.5) else {poses: keyed[poses]}
         chosen = {

@@ -226,7 +226,7 @@ def test_nothing_is_drawn_anew_where_nothing_changes(window, refreshes, tmp_path
     refreshes.clear()
     window.frames(10)
     assert refreshes == []
-    assert project.playhead.since is None
+    assert project.timeline.playhead.since is None
 
 
 def test_what_a_job_leads_to_is_drawn_at_once(window, refreshes):

@@ -71,7 +71,9 @@ def test_the_mesh_of_a_project_that_was_closed_is_let_go(window):
     """Also where something of it is in front, and the anchor and the status bar were shown."""
     project = window.open(sample_images() / "bar.png")
     window.act(add_handle, project.layer.domain.mesh.vertices.mean())
-    window.act(editing.edit_document, layer_commands.set_depth(project.active, 0, 1.0, None))
+    window.act(
+        editing.edit_document, layer_commands.set_depth(project.selection.active, 0, 1.0, None)
+    )
     window.settle()
     shown = project.layer_runtime.shown
     mesh = shown.mesh.domain.mesh

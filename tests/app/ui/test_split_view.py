@@ -49,11 +49,11 @@ def press_u(window):
 def test_the_shortcut_splits_the_view_and_puts_it_together_again(window, between):
     session = window.session
     depth = between.history.undo_label
-    assert session.compare_view is None
+    assert session.display.compare_view is None
     alone = window.picture()
     press_u(window)
-    assert session.compare_view is not None
-    assert session.compare_view.method is Variant.LINEAR
+    assert session.display.compare_view is not None
+    assert session.display.compare_view.method is Variant.LINEAR
     comparison = between.layer_runtime.comparison
     own, other = between.layer_runtime.shown.positions, comparison.shown.positions
     # Halfway round, straight ways are shorter than arcs.
@@ -61,7 +61,7 @@ def test_the_shortcut_splits_the_view_and_puts_it_together_again(window, between
     assert (np.abs(np.asarray(window.picture()).astype(int) - np.asarray(alone)) > 24).any()
     assert between.history.undo_label == depth
     press_u(window)
-    assert session.compare_view is None
+    assert session.display.compare_view is None
     assert between.layer_runtime.comparison is None
 
 
@@ -69,7 +69,7 @@ def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, betwe
     session = window.session
     viewing.toggle_comparison(session)
     window.settle()
-    before = session.compare_view.divider
+    before = session.display.compare_view.divider
     x, top = divider(window)
 
     def drag(robot):
@@ -79,10 +79,12 @@ def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, betwe
         robot.mouse_up()
 
     window.run(drag)
-    width = session.screen[0]
-    assert session.compare_view.divider == pytest.approx(before - 150 / width, abs=3 / width)
+    width = session.display.screen[0]
+    assert session.display.compare_view.divider == pytest.approx(
+        before - 150 / width, abs=3 / width
+    )
     assert divider(window)[0] == pytest.approx(x - 150, abs=3)
-    assert session.active_tool is None
+    assert session.tools.active is None
     assert len(between.layer.handles) == 2
 
 
@@ -135,16 +137,16 @@ def test_a_method_that_is_not_for_these_keys_says_why(window):
 @pytest.mark.usefixtures("between")
 def test_side_by_side_each_method_has_half_of_the_viewport(window):
     session = window.session
-    whole = session.screen
+    whole = session.display.screen
     viewing.toggle_comparison(session)
     viewing.set_side_by_side(session, beside=True)
     window.settle()
     window.frames(2)
-    assert session.screen[0] == pytest.approx(whole[0] / 2, abs=1)
-    assert session.screen[1] == whole[1]
+    assert session.display.screen[0] == pytest.approx(whole[0] / 2, abs=1)
+    assert session.display.screen[1] == whole[1]
     viewing.toggle_comparison(session)
     window.frames(3)
-    assert session.screen == whole
+    assert session.display.screen == whole
 
 
 @pytest.mark.usefixtures("everything")
@@ -180,13 +182,13 @@ def test_a_key_looks_the_same_by_every_method_and_posing_goes_on(window, between
 def test_nothing_is_compared_where_the_panel_says_so(window):
     session = window.session
     viewing.compare_with_method(session, Variant.ETA)
-    assert session.compare_view.method is Variant.ETA
+    assert session.display.compare_view.method is Variant.ETA
     viewing.compare_with_method(session, None)
-    assert session.compare_view is None
+    assert session.display.compare_view is None
     viewing.toggle_comparison(session)
-    assert session.compare_view.method is Variant.ETA
+    assert session.display.compare_view.method is Variant.ETA
     viewing.move_comparison_divider(session, 2.0)
-    assert session.compare_view.divider == 1 - viewing.LEAST_PART
+    assert session.display.compare_view.divider == 1 - viewing.LEAST_PART
 
 
 @pytest.mark.usefixtures("between")

@@ -91,7 +91,7 @@ def largest(project, field):
 
 def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
     tab("Handle", lambda robot: robot.item_click("**/###handle 0"))
-    assert project.selected_handles == {0}
+    assert project.selection.handles == {0}
 
     def change(robot):
         robot.item_input_value("**/##name", "paw")
@@ -231,7 +231,7 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
         robot.item_click("**/curves/###absolute")
 
     tab("Distortion", act)
-    assert window.session.overlays.heat_map == "sigma_a"
+    assert window.session.display.overlays.heat_map == "sigma_a"
     curves = project.curves.value
     assert curves.clip == project.clip
     assert curves.k_share.max() <= 1 + 1e-3
@@ -290,7 +290,7 @@ def test_outline_cage_and_mesh_are_shown(window, tab):
             robot.item_click(f"**/{name}")
 
     tab("Mesh", act)
-    overlays = window.session.overlays
+    overlays = window.session.display.overlays
     assert (overlays.outline, overlays.cage, overlays.wireframe) == (True, True, True)
     assert window.picture() != before
 
@@ -535,7 +535,9 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
     key = layer.key(24)
     target = Target(position=key.pose.targets[1].position + 12j)
     pose = replace(key.pose, targets={**key.pose.targets, 1: target})
-    editing.edit_document(window.session, key_commands.replace_key_pose(project.active, 24, pose))
+    editing.edit_document(
+        window.session, key_commands.replace_key_pose(project.selection.active, 24, pose)
+    )
     editing.select_handles(window.session, frozenset({1}))
     written = []
     for name in ("text_unformatted", "text_colored"):

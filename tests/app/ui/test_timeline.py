@@ -135,7 +135,7 @@ def undo_all(window):
 
 def test_click_chooses_a_key_and_goes_there(window, project, play):
     play(lambda hand: hand.click("key 24"))
-    assert project.selected_frames == {24}
+    assert project.selection.frames == {24}
     assert playback.current_frame(window.session, project) == 24
 
     def add(hand):
@@ -146,7 +146,7 @@ def test_click_chooses_a_key_and_goes_there(window, project, play):
         hand.robot.key_up(int(window.Key.mod_shift))
 
     play(add)
-    assert project.selected_frames == {0, 48}
+    assert project.selection.frames == {0, 48}
     assert project.history.undo_label is None
 
 
@@ -154,7 +154,7 @@ def test_drag_moves_keys_by_whole_frames_in_one_step(window, project, play):
     first = project.document
     moved = play(lambda hand: hand.drag("key 24", 26.4, 29.7))
     assert frames_of(moved) == (0, 12, 30, 48)
-    assert project.selected_frames == {30}
+    assert project.selection.frames == {30}
     assert moved.layers[0].keys[2].pose is first.layers[0].keys[2].pose
     editing.undo(window.session)
     assert project.document is first
@@ -194,7 +194,7 @@ def test_escape_takes_a_drag_back(window, project, play):
         hand.robot.mouse_up(0)
 
     assert play(escape) is first
-    assert project.selected_frames == {24}
+    assert project.selection.frames == {24}
 
 
 def test_keys_stop_before_others_and_at_frame_0(play):
@@ -221,16 +221,16 @@ def test_several_keys_move_together(window, project, play):
         hand.robot.mouse_up(0)
 
     play(box)
-    assert project.selected_frames == {12, 24}
+    assert project.selection.frames == {12, 24}
     assert frames_of(play(lambda hand: hand.drag("key 12", 17))) == (0, 17, 29, 48)
-    assert project.selected_frames == {17, 29}
+    assert project.selection.frames == {17, 29}
 
     def click_beside(hand):
         hand.go_to(55)
         hand.robot.mouse_click(0)
 
     play(click_beside)
-    assert project.selected_frames == frozenset()
+    assert project.selection.frames == frozenset()
     assert undo_all(window) == 1
 
 
@@ -245,7 +245,7 @@ def test_ctrl_drag_copies_and_del_deletes(window, project, play):
     copied = play(copy)
     assert frames_of(copied) == (0, 12, 24, 36, 48)
     assert copied.layers[0].keys[3].pose is first.layers[0].keys[1].pose
-    assert project.selected_frames == {36}
+    assert project.selection.frames == {36}
     deleted = play(lambda hand: hand.robot.key_press(int(window.Key.delete)))
     assert frames_of(deleted) == FRAMES
     assert undo_all(window) == 2
@@ -330,7 +330,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     window.run(lambda robot: robot.key_press(int(window.Key.j)))
     window.settle()
     assert project.paths.value is None  # nothing is selected
-    project.selected_handles = frozenset({1})
+    project.selection.handles = frozenset({1})
     window.settle()
     paths = project.paths.value
     assert project.paths.follows(project.clip)
@@ -339,7 +339,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     np.testing.assert_allclose(paths.positions[list(FRAMES), 1], places, atol=1e-6)
     shown = project.layer_runtime.shown
     with_path, _ = mark_all(window.session, project, shown, PALETTES["dark"])
-    project.selected_handles = frozenset()
+    project.selection.handles = frozenset()
     without, _ = mark_all(window.session, project, shown, PALETTES["dark"])
     assert len(with_path) > len(without)
     # In a corner at frame 12 the path is another one.
@@ -347,10 +347,10 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
         window.session,
         channel_commands.set_tangent_mode({pose_channel(0): frozenset({12})}, TangentMode.CORNER),
     )
-    project.selected_handles = frozenset({1})
+    project.selection.handles = frozenset({1})
     window.settle()
     assert np.abs(project.paths.value.positions - paths.positions)[6:20].max() > 0.1
-    window.session.overlays = replace(window.session.overlays, paths=False)
+    window.session.display.overlays = replace(window.session.display.overlays, paths=False)
 
 
 @pytest.mark.usefixtures("everything")
@@ -430,7 +430,7 @@ def test_menu_reverses_and_scales(window, project, play):
     assert frames_of(choose("###Scale time/Half as long")) == (0, 12, 18, 24)
     editing.select_keys(window.session, frozenset({18, 24}))
     assert frames_of(choose("###Scale time/Twice as long")) == (0, 12, 18, 30)
-    assert project.selected_frames == {18, 30}
+    assert project.selection.frames == {18, 30}
     undo_all(window)
     assert project.document is first
 
@@ -551,7 +551,7 @@ def test_last_frame_and_speed_are_typed(window, project, play):
 @pytest.mark.parametrize("field", ["frame", "fps"])
 def test_one_click_on_a_number_takes_what_is_typed(window, project, field):
     """The keys 1, b and n would zoom and set the preview range."""
-    before, camera = project.document, project.camera
+    before, camera = project.document, project.viewport.view
 
     def type_into(robot):
         robot.set_ref("Timeline")
@@ -563,7 +563,7 @@ def test_one_click_on_a_number_takes_what_is_typed(window, project, field):
 
     window.run(type_into)
     window.settle()
-    assert project.camera is camera
+    assert project.viewport.view is camera
     assert project.document.preview == before.preview
     values = {
         "frame": playback.current_frame(window.session, project),
@@ -783,20 +783,20 @@ def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, proje
     assert shot.centre == complex(*canvas) / 2
     assert shot.zoom == pytest.approx(1, rel=1e-12)
     playback.scrub(window.session, 30)
-    view = project.view(window.session.screen)
+    view = project.view_on(window.session.display.screen)
     viewing.set_view(window.session, replace(view, centre=60 + 70j, scale=2 * view.scale))
     key_camera(window.session)
     window.settle()
     assert camera_of(project) == [(0, 1), (30, 2)]
     assert camera_at(project.document, 30).centre == 60 + 70j
-    looked = project.view(window.session.screen)
+    looked = project.view_on(window.session.display.screen)
     viewing.set_view(window.session, None)
     toggle_camera_view(window.session)
-    again = project.view(window.session.screen)
+    again = project.view_on(window.session.display.screen)
     assert (again.centre, again.scale) == (looked.centre, pytest.approx(looked.scale))
     playback.scrub(window.session, 0)
     window.settle()
-    assert project.view(window.session.screen).centre == complex(*canvas) / 2
+    assert project.view_on(window.session.display.screen).centre == complex(*canvas) / 2
     # A key from there, turned, is what it was; looking elsewhere ends it.
     turned = replace(project.document.camera[0].value, turn=7.0)
     editing.edit_document(window.session, channel_commands.set_key(Channel(CAMERA), 0, turned))
@@ -805,7 +805,7 @@ def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, proje
     assert project.document.camera[0].value.turn == pytest.approx(7.0)
     editing.undo(window.session)
     viewing.set_view(window.session, None)
-    assert not project.is_camera_view
+    assert not project.viewport.is_camera_view
     window.settle()
 
     play(lambda hand: hand.drag(f"{CAMERA_LANE}/key 30", 50, 44))
@@ -837,7 +837,7 @@ def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, proje
 
 def test_what_the_camera_leaves_out_is_dimmed_in_the_viewport(window, project):
     inside, outside = CENTRE, CENTRE + 0.8 * RADIUS
-    window.session.overlays = replace(window.session.overlays, handles=False)
+    window.session.display.overlays = replace(window.session.display.overlays, handles=False)
 
     def brightness(place):
         point = window.point(place)

@@ -40,15 +40,15 @@ def with_track(window, project, keys=WAVE, handle=RIGHT, **settings):
     """Give a handle a track, show its row, and choose it."""
     own = tuple(TrackKey(frame=frame, place=complex(place)) for frame, place in keys)
     track = Track(handles=(handle,), keys=own, **settings)
-    editing.edit_document(window.session, track_commands.put_track(project.active, track))
-    timeline_drag.toggle_lanes(window.session, project.active)
-    project.selected_track = handle
+    editing.edit_document(window.session, track_commands.put_track(project.selection.active, track))
+    timeline_drag.toggle_lanes(window.session, project.selection.active)
+    project.selection.select_track(project.layer, handle)
     window.settle()
     return project.layer.track_of(handle)
 
 
 def row(project, handle=RIGHT):
-    return Channel(TRACK, project.active, handle)
+    return Channel(TRACK, project.selection.active, handle)
 
 
 def frames_of(project, handle=RIGHT):
@@ -63,7 +63,7 @@ def place_of(project, handle, frame):
 
 def places_of(project, handle, frames):
     """Where a handle is at some frames, exactly."""
-    clip = clip_of(project.document, project.active)
+    clip = clip_of(project.document, project.selection.active)
     animation = Animation(clip, points=np.array([project.layer.handle(handle).position]))
     return [complex(animation.positions(frame)[0]) for frame in frames]
 
@@ -75,7 +75,9 @@ class Rows:
         self.robot, self.project = robot, project
         robot.set_ref("###Timeline")
         first, last = project.layer.keys[0].frame, project.layer.keys[-1].frame
-        begin, end = (self.place(f"row {project.active}", f"key {f}") for f in (first, last))
+        begin, end = (
+            self.place(f"row {project.selection.active}", f"key {f}") for f in (first, last)
+        )
         self._step = (end.x - begin.x) / (last - first)
         self._origin = begin.x - first * self._step
         self.pose_y = begin.y
@@ -87,7 +89,7 @@ class Rows:
         return self.robot.item_info(self.name(place, item)).rect_full.get_center()
 
     def of(self, item, handle=RIGHT):
-        return self.name(f"lane track {self.project.active} {handle}", item)
+        return self.name(f"lane track {self.project.selection.active} {handle}", item)
 
     def y(self, handle=RIGHT):
         return self.robot.item_info(self.of("name", handle)).rect_full.get_center().y
@@ -189,19 +191,20 @@ def test_handles_of_a_selection_are_keyed_together_and_others_on_their_own(windo
 def test_rows_of_tracks_are_folded_away_until_somebody_asks(window, bent, play):
     own = (TrackKey(frame=3, place=2j),)
     editing.edit_document(
-        window.session, track_commands.put_track(bent.active, Track(handles=(RIGHT,), keys=own))
+        window.session,
+        track_commands.put_track(bent.selection.active, Track(handles=(RIGHT,), keys=own)),
     )
     window.settle()
     is_there = []
 
     def look(rows):
         is_there.append(rows.robot.item_exists(rows.of("key 3")))
-        rows.robot.item_click(f"**/fold {bent.active}")
+        rows.robot.item_click(f"**/fold {bent.selection.active}")
         is_there.append(rows.robot.item_exists(rows.of("key 3")))
 
     play(look)
     assert is_there == [False, True]
-    assert bent.timeline.expanded_layers == {bent.active}
+    assert bent.timeline.expanded_layers == {bent.selection.active}
 
 
 def test_keys_of_a_track_are_moved_copied_and_deleted(window, bent, play):
@@ -209,7 +212,7 @@ def test_keys_of_a_track_are_moved_copied_and_deleted(window, bent, play):
     before = bent.document
     play(lambda rows: rows.drag("key 8", 12, 13))
     assert frames_of(bent) == (0, 10, 16)
-    assert bent.selected_keys == {row(bent): {10}}
+    assert bent.selection.keys == {row(bent): {10}}
     assert bent.selected_track == RIGHT
     play(lambda rows: rows.drag("key 10", 15, 17, key=window.Key.mod_ctrl))
     assert frames_of(bent) == (0, 10, 14, 16)
@@ -230,7 +233,10 @@ def test_chosen_keys_of_poses_and_of_a_track_are_scaled_and_reversed_together(wi
     before = bent.document
     editing.select_channel_keys(
         window.session,
-        {pose_channel(bent.active): frozenset({0, 24}), row(bent): frozenset({2, 12, 22})},
+        {
+            pose_channel(bent.selection.active): frozenset({0, 24}),
+            row(bent): frozenset({2, 12, 22}),
+        },
     )
     window.act(keys.scale_selected_keys, 0.5)
     assert bent.layer.key_frames == {0, 12}
@@ -251,7 +257,9 @@ def test_chosen_keys_of_poses_and_of_a_track_are_scaled_and_reversed_together(wi
     window.act(editing.undo)
     assert bent.document is before
     # Those of poses alone leave the track, which has its own time, and the other way round.
-    editing.select_channel_keys(window.session, {pose_channel(bent.active): frozenset({0, 24})})
+    editing.select_channel_keys(
+        window.session, {pose_channel(bent.selection.active): frozenset({0, 24})}
+    )
     window.act(keys.scale_selected_keys, 0.5)
     assert frames_of(bent) == (2, 12, 22)
     assert bent.layer.key_frames == {0, 12}
@@ -271,7 +279,7 @@ def test_a_drag_of_a_track_key_is_given_up_with_esc(window, bent, play):
 
     play(give_up)
     assert bent.document is before
-    assert bent.selected_keys == {row(bent): {8}}
+    assert bent.selection.keys == {row(bent): {8}}
 
 
 def test_a_track_that_goes_in_the_middle_of_a_drag_ends_it(window, bent, play):
@@ -282,7 +290,9 @@ def test_a_track_that_goes_in_the_middle_of_a_drag_ends_it(window, bent, play):
         rows.robot.mouse_down(0)
         y = rows.y()
         rows.go_to(11, y)
-        editing.edit_document(window.session, track_commands.remove_tracks(bent.active, (RIGHT,)))
+        editing.edit_document(
+            window.session, track_commands.remove_tracks(bent.selection.active, (RIGHT,))
+        )
         rows.go_to(13, y)
         rows.go_to(14, y)
         rows.robot.mouse_up(0)
@@ -290,7 +300,7 @@ def test_a_track_that_goes_in_the_middle_of_a_drag_ends_it(window, bent, play):
     play(lose)
     assert not bent.layer.tracks
     assert bent.selected_track is None
-    assert not bent.selected_keys
+    assert not bent.selection.keys
 
 
 def test_a_box_takes_keys_of_poses_and_of_tracks_which_move_together(window, bent, play):
@@ -305,7 +315,7 @@ def test_a_box_takes_keys_of_poses_and_of_tracks_which_move_together(window, ben
         rows.robot.mouse_up(0)
 
     play(box)
-    assert bent.selected_keys == {pose_channel(bent.active): {24}, row(bent): {8, 16}}
+    assert bent.selection.keys == {pose_channel(bent.selection.active): {24}, row(bent): {8, 16}}
     play(lambda rows: rows.drag("key 8", 14, 15))
     assert frames_of(bent) == (0, 11, 19)
     assert [key.frame for key in bent.layer.keys] == [0, 27]
@@ -361,11 +371,14 @@ def test_what_is_chosen_is_where_keys_come_and_go(window, bent, play):
         window.act(playback.go_to_key, 1)
         seen.append(playback.current_frame(window.session, bent))
     assert seen == [9, 17, 17]
-    window.session.is_timeline_focused = True
+    window.session.display.is_timeline_focused = True
     window.act(editing.select_all)
-    assert bent.selected_keys == {pose_channel(bent.active): {0, 24}, row(bent): {0, 4, 8, 16}}
+    assert bent.selection.keys == {
+        pose_channel(bent.selection.active): {0, 24},
+        row(bent): {0, 4, 8, 16},
+    }
     # The row of the poses takes it back.
-    play(lambda rows: rows.robot.item_click(f"**/name {bent.active}"))
+    play(lambda rows: rows.robot.item_click(f"**/name {bent.selection.active}"))
     assert bent.selected_track is None
     window.act(keys.insert_key_in_row_at, 12)
     window.settle()
@@ -386,27 +399,29 @@ def test_a_chosen_track_is_deleted_in_the_timeline_and_its_handle_stays(window, 
     window.act(editing.undo)
     assert bent.document is before
     # Folded away, it is not what is meant any more.
-    bent.selected_track = RIGHT
-    play(lambda rows: rows.robot.item_click(f"**/fold {bent.active}"))
+    bent.selection.select_track(bent.layer, RIGHT)
+    play(lambda rows: rows.robot.item_click(f"**/fold {bent.selection.active}"))
     assert bent.selected_track is None
 
 
 def test_rows_are_scrolled_to_a_track_that_is_chosen(window, bent):
     for number in range(12):
         handle = Handle(id=0, name=f"joint {number}", position=150 + 60 * number + 117j)
-        command = handle_commands.add_handles(bent.active, [handle])
+        command = handle_commands.add_handles(bent.selection.active, [handle])
         editing.edit_document(window.session, command)
     own = (TrackKey(frame=3, place=0j), TrackKey(frame=9, place=0j))
     for handle in bent.layer.handles:
         track = Track(handles=(handle.id,), keys=own)
-        editing.edit_document(window.session, track_commands.put_track(bent.active, track))
-    timeline_drag.toggle_lanes(window.session, bent.active)
+        editing.edit_document(
+            window.session, track_commands.put_track(bent.selection.active, track)
+        )
+    timeline_drag.toggle_lanes(window.session, bent.selection.active)
     window.settle()
     assert bent.timeline.scrolled == 0, "the row of the poses is to be seen"
-    bent.selected_track = bent.layer.handles[-1].id
+    bent.selection.select_track(bent.layer, bent.layer.handles[-1].id)
     window.frames(3)
     assert bent.timeline.scrolled > 0
-    bent.selected_track = None
+    bent.selection.select_channel(None)
     window.frames(3)
     assert bent.timeline.scrolled == 0
 
@@ -424,17 +439,17 @@ def test_keys_of_a_track_are_copied_and_pasted(window, bent):
     window.act(editing.select_channel_keys, {row(bent): frozenset({8, 16})})
     window.run(lambda robot: robot.mouse_move("//###Timeline"))
     copy, paste = (int(window.Key.mod_ctrl) | int(key) for key in (window.Key.c, window.Key.v))
-    window.session.is_timeline_focused = True
+    window.session.display.is_timeline_focused = True
     window.run(lambda robot: robot.key_press(copy))
     window.act(playback.seek, 30)
     window.run(lambda robot: robot.key_press(paste))
     window.settle()
     assert frames_of(bent) == (0, 8, 16, 28, 36)
-    assert bent.selected_keys == {row(bent): {28, 36}}
+    assert bent.selection.keys == {row(bent): {28, 36}}
     window.act(editing.undo)
     assert bent.document is before
     # Where the track is gone, it comes again with them.
-    window.act(editing.edit_document, track_commands.remove_tracks(bent.active, (RIGHT,)))
+    window.act(editing.edit_document, track_commands.remove_tracks(bent.selection.active, (RIGHT,)))
     window.run(lambda robot: robot.key_press(paste))
     window.settle()
     assert frames_of(bent) == (30, 38)
@@ -467,7 +482,7 @@ def test_planting_keeps_the_motion_around_keys_that_have_velocities(window, bent
     with_track(window, bent)
     window.act(
         editing.edit_document,
-        track_commands.put_track(bent.active, Track(handles=(RIGHT,), keys=keys)),
+        track_commands.put_track(bent.selection.active, Track(handles=(RIGHT,), keys=keys)),
     )
     window.act(editing.select_handles, frozenset({RIGHT}))
     window.settle()
@@ -496,7 +511,7 @@ def test_a_new_key_on_a_way_with_velocities_leaves_the_way_as_it_is(window, bent
     )
     with_track(window, bent)
     track = Track(handles=(RIGHT,), keys=keys)
-    window.act(editing.edit_document, track_commands.put_track(bent.active, track))
+    window.act(editing.edit_document, track_commands.put_track(bent.selection.active, track))
     for frame, insert in ((7, tracks.key_handles_at_playhead), (15, tracks.set_handle_value)):
         playback.scrub(window.session, frame)
         at = track_at(track, bent.clip, frame).place
@@ -589,7 +604,7 @@ def test_a_handle_follows_like_a_tail(window, bent, press):
 
 def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
     spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
-    editing.edit_document(window.session, track_commands.put_spring(bent.active, spring))
+    editing.edit_document(window.session, track_commands.put_spring(bent.selection.active, spring))
     window.act(editing.select_handles, frozenset({RIGHT}))
     window.settle()
     before, frames = bent.document, range(0, 49, 4)
@@ -606,12 +621,14 @@ def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
 
 
 def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
-    editing.edit_document(window.session, shape_commands.set_auto_pins(bent.active, enabled=False))
     editing.edit_document(
-        window.session, channel_commands.delete_keys({pose_channel(bent.active): {24}})
+        window.session, shape_commands.set_auto_pins(bent.selection.active, enabled=False)
+    )
+    editing.edit_document(
+        window.session, channel_commands.delete_keys({pose_channel(bent.selection.active): {24}})
     )
     spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
-    editing.edit_document(window.session, track_commands.put_spring(bent.active, spring))
+    editing.edit_document(window.session, track_commands.put_spring(bent.selection.active, spring))
     window.settle()
     before = bent.document
     window.act(springs.bake_spring, RIGHT)
@@ -623,7 +640,7 @@ def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
 @pytest.mark.usefixtures("everything")
 def test_target_error_of_a_track_appears_in_pixels(window, bent):
     hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
-    editing.edit_document(window.session, track_commands.put_track(bent.active, hold))
+    editing.edit_document(window.session, track_commands.put_track(bent.selection.active, hold))
     track = with_track(window, bent, keys=((4, 0), (10, FAR), (16, 0)))
     misses = find_residuals(bent, bent.layer, track)
     assert 10 in misses
@@ -643,7 +660,8 @@ def test_target_error_of_a_track_appears_in_pixels(window, bent):
     assert target in ends
     # Switched off, it misses nothing.
     window.act(
-        editing.edit_document, track_commands.enable_track(bent.active, RIGHT, enabled=False)
+        editing.edit_document,
+        track_commands.enable_track(bent.selection.active, RIGHT, enabled=False),
     )
     window.settle()
     assert not find_residuals(bent, bent.layer, bent.layer.track_of(RIGHT))
@@ -652,7 +670,7 @@ def test_target_error_of_a_track_appears_in_pixels(window, bent):
 @pytest.mark.usefixtures("everything")
 def test_a_red_stretch_of_a_row_tells_by_how_much_it_is_missed(window, bent, play):
     hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
-    editing.edit_document(window.session, track_commands.put_track(bent.active, hold))
+    editing.edit_document(window.session, track_commands.put_track(bent.selection.active, hold))
     with_track(window, bent, keys=((4, 0), (10, FAR), (16, 0)))
     at = []
     play(lambda rows: at.extend([ImVec2(rows.x(20), rows.y()), ImVec2(rows.x(9), rows.y())]))
@@ -740,7 +758,7 @@ def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent, is_
 def test_a_track_of_several_handles_is_set_with_all_of_them_selected(window, bent, press):
     with_track(window, bent)
     track = Track(handles=(LEFT, RIGHT), keys=(TrackKey(frame=4, place=0j),))
-    window.act(editing.edit_document, track_commands.put_track(bent.active, track))
+    window.act(editing.edit_document, track_commands.put_track(bent.selection.active, track))
     for chosen in ({LEFT, RIGHT}, {RIGHT}):
         window.act(editing.select_handles, frozenset(chosen))
         window.settle()

@@ -150,7 +150,7 @@ def test_the_shape_follows_while_the_hand_moves_and_escape_takes_it_back(window,
 
 def test_a_planted_track_has_places_of_the_picture(window, keyed):
     places = [place_of(keyed)]
-    keyed.history.do(track_commands.plant_track(keyed.active, END, places, planted=True))
+    keyed.history.do(track_commands.plant_track(keyed.selection.active, END, places, planted=True))
     window.settle()
     start = place_of(keyed)
     drag(window, start, start + 15 + 10j)
@@ -195,7 +195,9 @@ def turned(project):
 
 def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed):
     keys = tuple(TrackKey(frame=f, place=p) for f, p in ((EARLIER, 0), (HALF, 8j), (LATER, 0)))
-    keyed.history.do(track_commands.put_track(keyed.active, Track(handles=(END,), keys=keys)))
+    keyed.history.do(
+        track_commands.put_track(keyed.selection.active, Track(handles=(END,), keys=keys))
+    )
     window.settle()
     before, poses, shown_before = keyed.document, keyed.layer.keys, turned(keyed)
     turn_by(window, keyed, 0.5)
@@ -215,7 +217,7 @@ def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed
 def test_the_ring_inserts_a_key_that_moves_nothing_and_turns_on_from_there(window, keyed):
     keys = tuple(TrackKey(frame=f, place=p, turn=0.3) for f, p in ((EARLIER, 0), (LATER, 8j)))
     track = Track(handles=(END,), keys=keys, keys_rotation=True)
-    keyed.history.do(track_commands.put_track(keyed.active, track))
+    keyed.history.do(track_commands.put_track(keyed.selection.active, track))
     window.settle()
     at = track_at(track, keyed.clip, HALF)
     turn_by(window, keyed, -0.4)
@@ -242,7 +244,7 @@ def test_escape_takes_a_turn_of_a_track_back(window, keyed):
 
 
 def test_the_ring_turns_the_pose_where_no_row_of_a_track_is_chosen(window, keyed):
-    keyed.selected_track = None
+    keyed.selection.select_channel(None)
     window.settle()
     tracked, poses = keyed.layer.tracks, keyed.layer.keys
     playback.scrub(window.session, LAST)
@@ -256,8 +258,8 @@ def offset_by(window, project, offset, frames):
     """Give the handle at the end a track with an offset, whose row is not chosen."""
     keys = tuple(TrackKey(frame=frame, place=offset) for frame in frames)
     track = Track(handles=(END,), keys=keys)
-    project.history.do(track_commands.put_track(project.active, track))
-    keyed.selected_track = None
+    project.history.do(track_commands.put_track(project.selection.active, track))
+    project.selection.select_channel(None)
     window.settle()
 
 
@@ -332,7 +334,7 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     take = bent.recording
     assert take is not None
     assert take.is_over
-    assert bent.playhead.since is None
+    assert bent.timeline.playhead.since is None
     assert playback.current_frame(window.session, bent) == 0, "the playhead is where that began"
     (track,) = bent.layer.tracks
     frames = [key.frame for key in track.keys]
@@ -362,7 +364,7 @@ def test_a_recording_is_as_smooth_as_the_hand_was_on_the_screen(window, bent):
     playback.scrub(window.session, 0)
     window.settle()
     record(window, bent, CIRCLE)
-    take, scale = bent.recording, bent.view(window.session.screen).scale
+    take, scale = bent.recording, bent.view_on(window.session.display.screen).scale
     assert take.scale == scale
     keys = {}
     for factor in (0.1, 1.0, 10.0):
@@ -380,9 +382,9 @@ def test_a_take_is_done_again_or_given_up(window, brief):
     assert brief.layer.tracks
     window.run(lambda robot: robot.item_click("**/Record again"))
     assert brief.document is before
-    assert window.session.records
+    assert window.session.tools.mode == "record"
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
-    assert not window.session.records
+    assert window.session.tools.mode != "record"
     record(window, brief, ARC)
     assert brief.layer.tracks
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
@@ -401,7 +403,7 @@ def test_escape_ends_a_recording_and_takes_it_back(window, brief):
     record(window, brief, ARC, until=until)
     assert brief.document is before
     assert brief.recording is None
-    assert brief.playhead.since is None
+    assert brief.timeline.playhead.since is None
     assert playback.current_frame(window.session, brief) == 0
 
 
@@ -417,8 +419,8 @@ def test_the_end_of_the_range_ends_a_recording_and_other_keys_stay(window, brief
     frames = [key.frame for key in track.keys]
     assert track.keys[0] == taken[0]
     assert frames[-1] == last
-    assert window.session.active_tool is None
-    assert brief.playhead.speed == 1.0
+    assert window.session.tools.active is None
+    assert brief.timeline.playhead.speed == 1.0
 
 
 def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, brief):
@@ -457,7 +459,7 @@ def test_a_click_records_nothing(window, brief):
     record(window, brief, [])
     assert brief.document is before
     assert brief.recording is None
-    assert brief.playhead.since is None
+    assert brief.timeline.playhead.since is None
 
 
 HOP = 30j  # by how much the body goes up
@@ -480,7 +482,7 @@ def hop_as_a_layer(project):
     for frame, shift in ((0, 0j), (HALF, HOP), (LAST, 0j)):
         project.history.do(
             channel_commands.set_key(
-                Channel(TRANSFORM, project.active), frame, Transform(shift, 0.0)
+                Channel(TRANSFORM, project.selection.active), frame, Transform(shift, 0.0)
             )
         )
 
@@ -525,7 +527,7 @@ def test_a_pointer_that_goes_with_the_body_changes_no_shape(window, brief, hop):
     window.settle()
     session, document = window.session, brief.document
     point = np.array([brief.layer.handle(END).position])
-    body = Animation(clip_of(document, brief.active), points=point)
+    body = Animation(clip_of(document, brief.selection.active), points=point)
 
     def place():
         """Return where in the scene the body has the handle, when the next picture is drawn."""
@@ -566,7 +568,7 @@ def test_a_planted_track_is_recorded_in_places_of_the_picture(window, brief):
     planted = Track(
         handles=(END,), is_scene_space=True, keys=(TrackKey(frame=0, place=place_of(brief)),)
     )
-    brief.history.do(track_commands.put_track(brief.active, planted))
+    brief.history.do(track_commands.put_track(brief.selection.active, planted))
     window.settle()
     record(window, brief, ARC)
     (track,) = brief.layer.tracks
@@ -578,7 +580,7 @@ def test_a_planted_track_is_recorded_in_places_of_the_picture(window, brief):
 
 
 def test_a_late_track_says_why_it_has_no_key_there(window, keyed):
-    keyed.history.do(track_commands.set_delay(keyed.active, END, LATER))
+    keyed.history.do(track_commands.set_delay(keyed.selection.active, END, LATER))
     window.settle()
     before, start = keyed.document, place_of(keyed)
     drag(window, start, start + 30j)
@@ -591,12 +593,12 @@ def test_a_late_track_says_why_it_has_no_key_there(window, keyed):
 def test_a_hand_sees_its_track_while_a_pose_elsewhere_waits_for_what_is_shown(window, keyed):
     start, track = place_of(keyed), keyed.selected_track
     playback.scrub(window.session, LAST)
-    keyed.selected_track = None
+    keyed.selection.select_channel(None)
     place = complex(keyed.layer.key(LAST).pose.targets[END].position)
     set_targets(window.session, {END: Target(position=place - 15j)})
     release_drag(window.session)
     playback.scrub(window.session, HALF)
-    keyed.selected_track = track
+    keyed.selection.select_track(keyed.layer, track)
     assert not keyed.drag.is_at_rest
 
     def then(robot):
@@ -621,7 +623,7 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
         raise EngineError("no way")
 
     monkeypatch.setattr("app.motion.corrected_frames._find", broken)
-    keyed.selected_track = None
+    keyed.selection.select_channel(None)
     playback.scrub(window.session, LAST)
     place = complex(keyed.layer.key(LAST).pose.targets[END].position)
     set_targets(window.session, {END: Target(position=place - 15j)})

@@ -435,7 +435,7 @@ def test_a_layer_is_looked_at_alone_while_exports_have_all(window, scene, ids):
     window.act(solo_layers, ids["hat"])
     window.act(delete_layers, ids["hat"])
     window.settle()
-    assert scene.solo == frozenset()
+    assert scene.layer_list.solo == frozenset()
 
 
 def test_several_layers_get_keys_together_and_go_together(window, scene, ids):
@@ -480,7 +480,7 @@ def test_group_of_mouths_is_offered_as_a_switch(window, scene, ids, use):
     window.act(editing.undo)
     window.frames(3)
     use(lambda robot: robot.item_click("**/No"))
-    assert scene.dismissed_suggestions == {"mouth"}
+    assert scene.layer_list.dismissed_suggestions == {"mouth"}
 
 
 def test_a_group_is_dragged_by_its_row(window, scene, ids, use):

@@ -34,15 +34,15 @@ def test_forty_and_enter_move_a_handle_by_forty_pixels(window, bar):
         # Neither digits nor letters are shortcuts now, and none of them is lost.
         robot.key_chars("40")
         robot.yield_(2)
-        assert "type a number of pixels" in window.session.hint.lower()
+        assert "type a number of pixels" in window.session.tools.hint.lower()
         robot.key_press(int(window.Key.enter))
-        assert window.session.active_tool is None
+        assert window.session.tools.active is None
         robot.mouse_move_to_pos(window.point(start + 60j))
         robot.mouse_up(0)
 
     window.run(play)
     assert target(window, bar).position == pytest.approx(start + 40, abs=0.5)
-    assert bar.camera is None
+    assert bar.viewport.view is None
     editing.undo(window.session)
     assert bar.document is before
 

@@ -172,7 +172,7 @@ def test_deleting_a_handle_while_it_is_dragged(window, loose):
     window.run(play)
     window.settle()
     assert [handle.id for handle in loose.document.layers[0].handles] == [0]
-    assert loose.selected_handles == frozenset()
+    assert loose.selection.handles == frozenset()
     assert loose.visible_drag is None
 
 
@@ -191,7 +191,7 @@ def test_deleting_a_key_while_it_is_dragged(window, loose):
     window.run(play)
     window.settle()
     assert frames_of(loose) == [0]
-    assert loose.selected_frames == frozenset()
+    assert loose.selection.frames == frozenset()
     assert loose.timeline.gesture is None
 
 
@@ -272,17 +272,17 @@ def test_end_of_the_preview_range_before_its_beginning_takes_that_along(window):
 
 def test_only_what_is_there_is_selected(window, loose):
     editing.select_handles(window.session, frozenset({1, 7}))
-    assert loose.selected_handles == {1}
-    poses = pose_channel(loose.active)
+    assert loose.selection.handles == {1}
+    poses = pose_channel(loose.selection.active)
     timeline_drag.begin_timeline_drag(
         window.session,
         KeyBox(start=0.0, channel=poses, keeps={poses: frozenset({24, 31})}),
         loose.timeline.time_range,
     )
     timeline_drag.move_timeline_drag(window.session, 10.0, poses)
-    assert loose.selected_frames == {0, 24}
+    assert loose.selection.frames == {0, 24}
     timeline_drag.cancel_timeline_drag(window.session)
-    assert loose.selected_frames == {24}
+    assert loose.selection.frames == {24}
 
 
 def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, loose):
@@ -337,7 +337,7 @@ def test_handle_out_of_reach_is_reported_and_freed(window, loose, monkeypatch):
         robot.mouse_up(0)
         robot.key_up(imgui.Key.mod_alt)
 
-    viewing.set_view(session, replace(loose.view(session.screen), scale=0.3))
+    viewing.set_view(session, replace(loose.view_on(session.display.screen), scale=0.3))
     window.frames(2)
     window.run(lambda robot: pull(robot, far))
     window.settle()

@@ -607,7 +607,9 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
     window.settle()
     rest = project.layer.keys[0].pose
     moved = replace(rest, phi=rest.phi + 20)
-    project.history.set_preview_pose(PreviewPose(layer=project.active, frame=4, pose=moved))
+    project.history.set_preview_pose(
+        PreviewPose(layer=project.selection.active, frame=4, pose=moved)
+    )
     assert project.unkeyed_pose is moved
     out = tmp_path / "pose.png"
 

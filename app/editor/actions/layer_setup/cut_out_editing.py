@@ -12,8 +12,9 @@ from app.editor.action import do
 from app.editor.actions import editing
 from app.editor.actions.action_spec import named_action, unless
 from app.editor.error_reports import run_job
+from app.editor.parts.tools import CutTool
 from app.editor.project import Project
-from app.editor.session import CutTool, Session, with_project
+from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.storage import (
     check_writable,
@@ -37,27 +38,22 @@ BESIDE = 1.25  # widths of a slit: a handle nearer to the knife's line may be in
 DROP = 2  # radius in pixels around a picked place whose colours count
 
 
-@with_project
-def toggle_cut_tool(session: Session, project: Project, tool: CutTool | None) -> None:
+def toggle_cut_tool(session: Session, tool: CutTool | None) -> None:
     """Select a cut-out tool; None, or the selected tool again, selects the pose tool."""
-    if session.active_tool is None:
-        session.cutting = None if tool == session.cutting else tool
-        session.material = project.motion_setup = None
-        session.panel_to_focus = PANEL if session.cutting else session.panel_to_focus
+    if session.tools.active is None:
+        session.tools.toggle(tool or "pose")
+        if session.tools.is_cutting:
+            session.display.focus_panel(PANEL)
 
 
-@named_action(
-    "cut out", _("Cut-out brush"), "X", active=lambda session: session.cutting is not None
-)
+@named_action("cut out", _("Cut-out brush"), "X", active=lambda session: session.tools.is_cutting)
 def toggle_cut_brush(session: Session) -> None:
     """Select the brush that removes; if a brush is selected, swap keep and remove."""
-    toggle_cut_tool(session, "keep" if session.cutting == "remove" else "remove")
+    toggle_cut_tool(session, "keep" if session.tools.mode == "remove" else "remove")
 
 
 UNLESS_BRUSH = unless(
-    lambda session, _: (
-        session.cutting in {"keep", "remove"} or session.material not in {None, "bone"}
-    ),
+    lambda session, _: session.tools.mode in {"keep", "remove", "stiff", "soft", "normal"},
     _("Select a brush in the Cut-out or Material tab first."),
 )
 
@@ -194,10 +190,10 @@ def ask_mask_to_load(session: Session) -> None:
 @with_project
 def load_mask(session: Session, project: Project, path: Path) -> None:
     """Read a mask on the worker; it replaces the background and all strokes."""
-    identity = project.active
+    identity = project.selection.active
 
     def take(mask: Mask) -> None:
-        if session.project is project and project.active == identity:
+        if session.project is project and project.selection.active == identity:
             change_cut_out(session, mask=mask, strokes=())
 
     kind = JobKind(_("Loading the mask"), _("{name} cannot be loaded").format(name=path.name))

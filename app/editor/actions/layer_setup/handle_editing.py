@@ -31,7 +31,7 @@ from app.texts import _
 def select_mirrored(session: Session, project: Project) -> None:
     """Select the handles on the other side whose names match the selected ones."""
     pairs = mirrored_handles_by_name(project.layer.handles, project.document.pairs)
-    partners = frozenset(pairs[handle] for handle in project.selected_handles if handle in pairs)
+    partners = frozenset(pairs[handle] for handle in project.selection.handles if handle in pairs)
     if partners:
         select_handles(session, partners)
     else:
@@ -45,7 +45,7 @@ def select_mirrored(session: Session, project: Project) -> None:
 
 def _are_all_locked(session: Session) -> bool:
     project = session.project
-    selected = project.selected_handles if project else frozenset[int]()
+    selected = project.selection.handles if project else frozenset[int]()
     return bool(project and selected and all(map(project.layer.is_locked, selected)))
 
 
@@ -61,12 +61,12 @@ def _are_all_locked(session: Session) -> bool:
 @with_project
 def toggle_handles_locked(session: Session, project: Project) -> None:
     """Lock the selected handles, or unlock them if all are locked."""
-    if project.selected_handles:
+    if project.selection.handles:
         chosen = [
-            handle for handle in project.layer.handles if handle.id in project.selected_handles
+            handle for handle in project.layer.handles if handle.id in project.selection.handles
         ]
         locked = not all(handle.locked for handle in chosen)
-        edit_layer(session, handle_commands.lock_handles, project.selected_handles, locked=locked)
+        edit_layer(session, handle_commands.lock_handles, project.selection.handles, locked=locked)
 
 
 @named_action(
@@ -76,16 +76,16 @@ def toggle_handles_locked(session: Session, project: Project) -> None:
     icon="OBJECT_GROUP",
     hint=_("Select and drag these handles together"),
     why_disabled=unless(
-        lambda _, project: len(project.selected_handles) > 1, _("Select several handles first.")
+        lambda _, project: len(project.selection.handles) > 1, _("Select several handles first.")
     ),
 )
 @with_project
 def group_handles(session: Session, project: Project) -> None:
-    if len(project.selected_handles) > 1:
+    if len(project.selection.handles) > 1:
         taken = {handle.group for handle in project.layer.handles}
         names = (_("group {number}").format(number=number) for number in count(1))
         name = next(each for each in names if each not in taken)
-        edit_layer(session, handle_commands.group_handles, project.selected_handles, name)
+        edit_layer(session, handle_commands.group_handles, project.selection.handles, name)
 
 
 @named_action(
@@ -98,7 +98,7 @@ def group_handles(session: Session, project: Project) -> None:
         lambda _, project: any(
             handle.group
             for handle in project.layer.handles
-            if handle.id in project.selected_handles
+            if handle.id in project.selection.handles
         ),
         _("Select a handle of a group first."),
     ),
@@ -106,13 +106,13 @@ def group_handles(session: Session, project: Project) -> None:
 @with_project
 def ungroup_handles(session: Session, project: Project) -> None:
     """Dissolve the groups of the selected handles."""
-    fellows = frozenset[int]().union(*map(project.layer.grouped_handles, project.selected_handles))
+    fellows = frozenset[int]().union(*map(project.layer.grouped_handles, project.selection.handles))
     edit_layer(session, handle_commands.group_handles, fellows, "")
 
 
 def depth_channel(project: Project, handle: Handle) -> Channel[float]:
     """Return the channel of a handle's depth in the active layer."""
-    return Channel(DEPTH, project.active, handle.id)
+    return Channel(DEPTH, project.selection.active, handle.id)
 
 
 @with_project

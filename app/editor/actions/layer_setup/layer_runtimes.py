@@ -28,7 +28,4 @@ def update_layer_runtimes(project: Project) -> None:
         project.layer_runtimes[layer.id] = LayerRuntime.of(
             clip_of(document, layer.id), picture, among=len(document.layers)
         )
-    if project.active not in project.layer_runtimes:
-        posable = [layer.id for layer in document.layers if not layer.still]
-        project.active = (posable or [layer.id for layer in document.layers])[-1]
-        project.selected_handles = project.selected_frames = frozenset()
+    project.selection.keep_existing(document)

@@ -63,7 +63,7 @@ def relax_limits_and_solve(
     cancel_solving_keys(session)
     gesture = object()
     # The old limits lie within the new ones, so no key has to be solved again.
-    project.history.do(shape_commands.set_limits(project.active, bounds), gesture=gesture)
+    project.history.do(shape_commands.set_limits(project.selection.active, bounds), gesture=gesture)
     solve_pose_again(session, asked or {}, gesture=gesture)
 
 
@@ -73,7 +73,7 @@ def relax_motion_limits(session: Session, project: Project) -> None:
     bounds = relax_limits(project.layer.bounds)
     if bounds is not None:
         cancel_solving_keys(session)
-        project.history.do(shape_commands.set_limits(project.active, bounds))
+        project.history.do(shape_commands.set_limits(project.selection.active, bounds))
 
 
 def set_limit(session: Session, bounds: Bounds, name: str, value: float) -> None:
@@ -117,7 +117,7 @@ def rebuild_changed_cut_out(session: Session, project: Project) -> None:
         return
     if project.stale is None or project.stale[0] is not stale:
         project.stale = stale, session.clock()
-    is_busy = session.active_tool is not None or project.pending
+    is_busy = session.tools.active is not None or project.pending
     if not is_busy and session.clock() - project.stale[1] >= REST:
         resolver = KeyResolver(before=stale, bounds=stale.bounds, meshing=stale.meshing)
         _go_on(session, project, resolver)

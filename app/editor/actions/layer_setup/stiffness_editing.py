@@ -11,8 +11,9 @@ from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import ActionSpec, named_action, unless
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.posing.pose_drag import solve_pose_again
+from app.editor.parts.tools import StiffnessTool
 from app.editor.project import Project
-from app.editor.session import MaterialTool, Session, with_project
+from app.editor.session import Session, with_project
 from app.errors import LissomError
 from app.texts import _, message_of
 from engine.errors import EngineError
@@ -31,12 +32,11 @@ SUGGESTED = (
 
 
 @with_project
-def toggle_stiffness_tool(session: Session, project: Project, tool: MaterialTool | None) -> None:
+def toggle_stiffness_tool(session: Session, project: Project, tool: StiffnessTool | None) -> None:
     """Select a stiffness tool; None, or the selected tool again, selects the pose tool."""
-    if session.active_tool is None:
+    if session.tools.active is None:
         playback.stop_playback(session)
-        session.material = None if tool == session.material else tool
-        session.cutting, session.moves, project.motion_setup = None, False, None
+        session.tools.toggle(tool or "pose")
         if project.brush is None:
             cut_out_editing.set_brush_radius(session, FIRST_BRUSH * max(project.layer.picture.size))
 
@@ -48,7 +48,7 @@ MAKE_STIFF = ActionSpec(
     "G",
     icon="CUBE",
     hint=_("Brush over parts that bend and stretch less"),
-    active=lambda session: session.material in BRUSHES,
+    active=lambda session: session.tools.stiffness_tool in BRUSHES,
 )
 DRAW_BONES = ActionSpec(
     do(toggle_stiffness_tool, "bone"),
@@ -57,24 +57,24 @@ DRAW_BONES = ActionSpec(
     "Shift+B",
     icon="BONE",
     hint=_("Drag from one handle to another: the limb between them is stiff"),
-    active=lambda session: session.material == "bone",
+    active=lambda session: session.tools.mode == "bone",
 )
 
 
 def set_stiffness_strength(session: Session, strength: float) -> None:
     """Set the factor of stiffness or softness that the brush paints."""
-    session.strength = min(max(strength, WEAKEST), STRONGEST)
+    session.tools.set_brush_strength(min(max(strength, WEAKEST), STRONGEST))
 
 
 def set_brush_softness(session: Session, softness: float) -> None:
     """Set the part of the brush's radius over which its effect fades."""
-    session.softness = min(max(softness, 0.0), 1.0)
+    session.tools.set_brush_softness(min(max(softness, 0.0), 1.0))
 
 
 @with_project
 def paint_stiffness(session: Session, project: Project, places: Sequence[complex]) -> None:
     """Paint or erase stiffness along a stroke; `places` are in the shown pose."""
-    shown, tool = project.layer_runtime.shown, session.material
+    shown, tool = project.layer_runtime.shown, session.tools.stiffness_tool
     if shown is None or tool is None:
         return
     at = np.array(places, dtype=np.complex128)
@@ -84,9 +84,12 @@ def paint_stiffness(session: Session, project: Project, places: Sequence[complex
         .tolist()
     )
     radius = cut_out_editing.brush_radius(project)
-    amount = {"stiff": session.strength, "soft": 1 / min(session.strength, SOFTEST)}.get(tool, 1.0)
+    amount = {
+        "stiff": session.tools.strength,
+        "soft": 1 / min(session.tools.strength, SOFTEST),
+    }.get(tool, 1.0)
     _weights, is_reached = brushed_stiffness(
-        project.layer, rest, radius=radius, amount=amount, softness=session.softness
+        project.layer, rest, radius=radius, amount=amount, softness=session.tools.softness
     )
     if not is_reached:
         session.notices.show(
@@ -95,7 +98,11 @@ def paint_stiffness(session: Session, project: Project, places: Sequence[complex
         )
         return
     command = stiffness_commands.paint_stiffness(
-        project.active, rest, radius=radius, amount=amount, softness=session.softness
+        project.selection.active,
+        rest,
+        radius=radius,
+        amount=amount,
+        softness=session.tools.softness,
     )
     editing.edit_document(session, command)
 
@@ -110,7 +117,7 @@ def mirror_stiffness(session: Session, project: Project) -> None:
 def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
     """Put a bone between two handles, or show why there can be none."""
     try:
-        project.history.do(stiffness_commands.add_bone(project.active, ends))
+        project.history.do(stiffness_commands.add_bone(project.selection.active, ends))
     except (EngineError, LissomError) as error:
         session.notices.show(message_of(error), tone="error", topic="material")
 
@@ -119,13 +126,13 @@ def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
     "bone between",
     _("Add bone"),
     why_disabled=unless(
-        lambda _, project: len(project.selected_handles) == 2, _("Select two handles first.")
+        lambda _, project: len(project.selection.handles) == 2, _("Select two handles first.")
     ),
 )
 @with_project
 def add_bone_between_selected(session: Session, project: Project) -> None:
-    if len(project.selected_handles) == 2:
-        first, second = sorted(project.selected_handles)
+    if len(project.selection.handles) == 2:
+        first, second = sorted(project.selection.handles)
         add_bone(session, (first, second))
 
 
@@ -151,7 +158,11 @@ def suggest_stiffness(session: Session, project: Project) -> None:
         outline, *holes = layer.domain.loops
         (depth,) = distance_to_boundary(outline, np.array([handle.position]), holes).tolist()
         command = stiffness_commands.paint_stiffness(
-            project.active, [handle.position], radius=AROUND * depth, amount=amount, softness=0.5
+            project.selection.active,
+            [handle.position],
+            radius=AROUND * depth,
+            amount=amount,
+            softness=0.5,
         )
         project.history.do(command, gesture=gesture)
         done.append(handle.name)

@@ -36,9 +36,9 @@ def add_handle(
     rest = _at_rest(project.layer_runtime.shown, place)
     identity = project.layer.next_handle
     project.history.do(
-        handle_commands.add_handle(project.active, rest), gesture=gesture or object()
+        handle_commands.add_handle(project.selection.active, rest), gesture=gesture or object()
     )
-    project.selected_handles, project.selected_frames = frozenset({identity}), frozenset()
+    project.selection.select_handles(frozenset({identity}))
 
 
 @with_project
@@ -51,9 +51,9 @@ def remove_handles(
 ) -> None:
     """Delete handles; poses stay."""
     commit_drag_now(session)
-    command = handle_commands.remove_handles(project.active, identities)
+    command = handle_commands.remove_handles(project.selection.active, identities)
     project.history.do(command, gesture=gesture or object())
-    project.selected_handles -= identities
+    project.selection.deselect_handles(identities)
 
 
 @named_action(
@@ -79,9 +79,11 @@ def suggest_handles(session: Session, project: Project) -> None:
         for place, name in free
     ]
     gesture = object()
-    project.history.do(handle_commands.add_handles(project.active, handles), gesture=gesture)
+    project.history.do(
+        handle_commands.add_handles(project.selection.active, handles), gesture=gesture
+    )
     added = {handle.id for handle in project.layer.handles} - {h.id for h in layer.handles}
-    project.selected_handles = project.selected_frames = frozenset()
+    project.selection.clear()
     count = len(added)
     session.notices.show(
         ngettext(
@@ -104,7 +106,7 @@ def _take_suggestions_back(
     remaining = added & {handle.id for handle in project.layer.handles}
     if remaining:
         remove_handles(session, remaining)
-    project.selected_handles -= added
+    project.selection.deselect_handles(added)
 
 
 @named_action(
@@ -120,7 +122,7 @@ def mirror_handles(session: Session, project: Project) -> None:
     layer, words = project.layer, project.document.pairs
     pairs = mirrored_handles_by_name(layer.handles, words)
     alone = [
-        handle for handle in layer.handles if handle.id in project.selected_handles - pairs.keys()
+        handle for handle in layer.handles if handle.id in project.selection.handles - pairs.keys()
     ]
     gesture, outside = object(), 0
     partners: list[Handle] = []
@@ -132,11 +134,13 @@ def mirror_handles(session: Session, project: Project) -> None:
         name = handle.name
         if mirrored_name(name, words) is None:
             name += ".L" if handle.position.real < layer.axis else ".R"
-            command = handle_commands.rename_handle(project.active, handle.id, name)
+            command = handle_commands.rename_handle(project.selection.active, handle.id, name)
             project.history.do(command, gesture=gesture)
         partners.append(replace(handle, name=mirrored_name(name, words) or name, position=place))
     if partners:
-        project.history.do(handle_commands.add_handles(project.active, partners), gesture=gesture)
+        project.history.do(
+            handle_commands.add_handles(project.selection.active, partners), gesture=gesture
+        )
     if outside:
         session.notices.show(
             _(
@@ -160,7 +164,9 @@ def toggle_anchor_at_handle(
     """Make a handle's point the anchor; if it is the anchor, let the engine choose again."""
     place = project.layer.handle(identity).position
     project.history.do(
-        shape_commands.set_anchor(project.active, None if project.layer.anchor == place else place),
+        shape_commands.set_anchor(
+            project.selection.active, None if project.layer.anchor == place else place
+        ),
         gesture=gesture,
     )
 
@@ -172,7 +178,9 @@ def set_anchor(
     """Make the shape's point at a shown place the anchor."""
     if project.layer_runtime.shown:
         rest = _at_rest(project.layer_runtime.shown, place)
-        project.history.do(shape_commands.set_anchor(project.active, rest), gesture=gesture)
+        project.history.do(
+            shape_commands.set_anchor(project.selection.active, rest), gesture=gesture
+        )
 
 
 def _at_rest(shown: DisplayedFrame, place: complex) -> complex:

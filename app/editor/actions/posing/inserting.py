@@ -22,14 +22,14 @@ def insert_key(session: Session, project: Project) -> None:
     """Insert a key of the shown pose at the present frame, in each selected layer."""
     playback.stop_playback(session)
     commit_drag_now(session)
-    if project.other_selected_layers:
+    if project.selection.other_layers:
         here, gesture = playback.current_frame(session, project), object()
         chosen = [project.document.layer(each) for each in project.selected_layers]
         for layer in (each for each in chosen if not each.still):
             if (at := layer.source_of(here)) not in layer.key_frames:
                 insert_key_at(session, layer.id, at, gesture)
         return
-    insert_key_at(session, project.active, playback.edited_frame(session, project))
+    insert_key_at(session, project.selection.active, playback.edited_frame(session, project))
 
 
 @with_project
@@ -79,8 +79,8 @@ def _insert(
     if layer in project.layer_runtimes and clip_of(project.document, layer) == clip:
         found = PreviewPose(layer=layer, frame=frame, pose=pose)
         project.history.do(key_pose_command(session, project, found), gesture=gesture)
-        if project.active == layer:
-            project.selected_frames = frozenset({frame})
+        if project.selection.active == layer:
+            project.selection.select_pose_key(frame)
     else:
         # Other keys changed meanwhile, so the layer's shown pose there has changed.
         insert_key_at(session, layer, frame, gesture)

@@ -104,7 +104,7 @@ def set_targets(session: Session, targets: Mapping[int, Target]) -> None:
 @with_project
 def pin_selected_handles(session: Session, project: Project) -> None:
     """Set the targets of the selected handles to their present places."""
-    selected = project.selected_handles
+    selected = project.selection.handles
 
     def here(start: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
         known = selected & targets.keys()
@@ -118,7 +118,7 @@ def pin_selected_handles(session: Session, project: Project) -> None:
 def nudge_handles(session: Session, project: Project, step: complex) -> None:
     """Move the targets of the selected handles by `step` in pixels of the picture."""
     handles = project.layer.handles
-    moved = {h.id for h in handles if h.id in project.selected_handles and not h.locked}
+    moved = {h.id for h in handles if h.id in project.selection.handles and not h.locked}
 
     def away(_: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
         known = moved & targets.keys()

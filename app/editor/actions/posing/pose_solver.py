@@ -106,7 +106,7 @@ def step_pose_solver(session: Session, project: Project) -> None:
 
 def is_drag_at_playhead(session: Session, project: Project, drag: DragSession) -> bool:
     """Return whether the playhead rests on a drag's frame, where all its poses are shown."""
-    if project.playhead.since is not None:
+    if project.timeline.playhead.since is not None:
         return False
     frame = playback.current_frame(session, project)
     return project.document.layer(drag.layer).source_of(frame) == drag.frame
@@ -120,7 +120,7 @@ def is_display_final(session: Session, project: Project) -> bool:
         return True
     if shown is None or shown.placeholder is not None:
         return False
-    if project.playhead.since is not None:
+    if project.timeline.playhead.since is not None:
         # During playback the shown frame is always a moment late, and corrections are not computed.
         return True
     return not shown.is_approximate and shown.frame == playback.current_frame(session, project)

@@ -74,7 +74,7 @@ def _relax_limits(
     loosen: RelaxLimits,
 ) -> None:
     """Relax a layer's limits, and drag it once more to the original targets."""
-    if layer != project.active:
+    if layer != project.selection.active:
         session.notices.show(
             _("Another layer is posed now. Select the layer that was dragged, and drag again.")
         )

@@ -139,7 +139,7 @@ def _request(
     session: Session, project: Project, out: Path, settings: ExportSettings
 ) -> ExportRequest:
     if EXPORT_FORMATS[settings.format].is_still:
-        now = project.playhead.frame_at(project.document, session.clock())
+        now = project.timeline.playhead.frame_at(project.document, session.clock())
         settings = replace(settings, frames=FrameRange(now, now))
     return ExportRequest(
         out=out, settings=settings, project=project.file.name, sources=project.file.sources
@@ -155,7 +155,7 @@ def _prepare(
     """Prepare a checked export on a worker, and then start it."""
     document, format_ = project.document, EXPORT_FORMATS[request.settings.format]
     unkeyed = project.preview_pose
-    if format_.is_still and unkeyed is not None and unkeyed.layer == project.active:
+    if format_.is_still and unkeyed is not None and unkeyed.layer == project.selection.active:
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
             document = key_pose_command(session, project, unkeyed)(document)
@@ -295,4 +295,4 @@ def open_folder(session: Session, folder: Path) -> None:
     except OSError:
         text = _("no file manager was found; the folder is {folder}")
         raise LissomError(text.format(folder=folder)) from None
-    session.hint = display_name(folder)
+    session.tools.show_hint(display_name(folder))

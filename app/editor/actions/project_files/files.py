@@ -15,6 +15,7 @@ from app.editor.actions.project_files import saving
 from app.editor.actions.project_files.saving import PROJECT
 from app.editor.error_reports import as_sentence, run_job
 from app.editor.parts.project_file import ProjectFile
+from app.editor.parts.selection import Selection
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import JobKind
@@ -196,7 +197,7 @@ def _install(
         file=ProjectFile(name=name, path=own, digest=opened.read_as, drawings=drawings, lock=hold),
         history=History(opened.document, saved=True),
         layer_runtimes=opened.layer_runtimes,
-        active=foremost_posable(opened.document),
+        selection=Selection(active=foremost_posable(opened.document)),
     )
     saving.set_project(session, project)
     if path.parent != sample_images():

@@ -11,6 +11,7 @@ from app.editor.actions.project_files.files import OpenedFile, decode_project, f
 from app.editor.error_reports import run_job
 from app.editor.parts.dialogs import RecoverableFile, RecoveryDialog
 from app.editor.parts.project_file import ProjectFile
+from app.editor.parts.selection import Selection
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import JobKind
@@ -81,7 +82,7 @@ def install_recovered(session: Session, path: Path, opened: OpenedFile, origin: 
             file=ProjectFile(name=origin.name, path=origin.path, is_recovered=True),
             history=History(opened.document, saved=False),
             layer_runtimes=opened.layer_runtimes,
-            active=foremost_posable(opened.document),
+            selection=Selection(active=foremost_posable(opened.document)),
         ),
     )
     session.settings.autosave.write(opened.document, origin)

@@ -150,9 +150,8 @@ def lock_project_file(session: Session, path: Path) -> FileLock | None:
 
 def set_project(session: Session, project: Project | None) -> None:
     """Open a project in the window, or None; unlock the file of the previous project."""
-    before, session.project = session.project, project
-    session.active_tool = session.cutting = session.material = None
-    session.moves = False
+    before = session.project
+    session.put_project(project)
     hold = before.file.lock if before is not None else None
     if hold is not None and (project is None or project.file.lock is not hold):
         hold.release()
@@ -261,7 +260,7 @@ def close_window(session: Session) -> None:
     session.settings.autosave.remove()
     if session.project is not None:
         session.project.file.replace_lock(None)
-    session.is_quitting = True
+    session.quit()
 
 
 def has_unsaved_changes(project: Project) -> bool:

@@ -18,7 +18,8 @@ from app.document import (
 )
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action, unless
-from app.editor.project import Project, fit_view_around
+from app.editor.parts.viewport_state import fit_view_around
+from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.motion import BoundingBox
 from app.texts import _
@@ -70,8 +71,8 @@ def key_camera(session: Session, project: Project) -> None:
     The rotation is kept if the viewport is upright.
     """
     document, frame = project.document, playback.current_frame(session, project)
-    shot, view = camera_at(document, frame), project.view(session.screen)
-    whole = fit_view_around(BoundingBox(0j, complex(*document.canvas)), session.screen)
+    shot, view = camera_at(document, frame), project.view_on(session.display.screen)
+    whole = fit_view_around(BoundingBox(0j, complex(*document.canvas)), session.display.screen)
     turn = 0.0 if shot is None else shot.turn
     if view.turn != 1:
         # The nearest angle among those whole turns apart.
@@ -88,9 +89,9 @@ def key_camera(session: Session, project: Project) -> None:
     why_disabled=unless(
         lambda _, project: project.document.camera, _("There is no camera. Key the camera first.")
     ),
-    active=lambda session: session.project and session.project.is_camera_view,
+    active=lambda session: session.project and session.project.viewport.is_camera_view,
 )
 @with_project
 def toggle_camera_view(_: Session, project: Project) -> None:
     """Show the camera's view in the viewport, or the earlier view again."""
-    project.is_camera_view = not project.is_camera_view
+    project.viewport.toggle_camera_view()

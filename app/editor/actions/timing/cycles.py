@@ -24,7 +24,7 @@ def selected_range(project: Project) -> tuple[int, int] | None:
 
     None if there are fewer than two keys.
     """
-    frames = set[int]().union(*project.selected_keys.values())
+    frames = set[int]().union(*project.selection.keys.values())
     if len(frames) < 2:
         layers = project.selected_layers
         channels = map(pose_channel, layers) if len(layers) > 1 else [project.channel]
@@ -96,7 +96,7 @@ def _change(
         return
     layers = [
         each
-        for each in {project.active, *_layers(project)}
+        for each in {project.selection.active, *_layers(project)}
         if any(cycle.first == other.first for other in project.document.layer(each).cycles)
     ]
     commands = [command(each, cycle.first) for each in layers]
@@ -107,13 +107,13 @@ def _change(
 def _layers(project: Project) -> list[int]:
     """Return the layers of selected keys and the selected layers, or the active layer."""
     together = project.selected_layers if len(project.selected_layers) > 1 else ()
-    layers = {*together, *_layers_of_keys(project)} or {project.active}
+    layers = {*together, *_layers_of_keys(project)} or {project.selection.active}
     return sorted(each for each in layers if _may_repeat(project.document, each))
 
 
 def _layers_of_keys(project: Project) -> Iterator[int]:
     """Yield the layers of the selected keys; a switch stands for its layers."""
-    for channel in project.selected_keys:
+    for channel in project.selection.keys:
         if channel.layer is not None:
             yield channel.layer
         elif channel.kind is SWITCH:

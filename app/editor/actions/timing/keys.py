@@ -52,7 +52,7 @@ def edit_timing(
     editing.edit_document(session, command, gesture=gesture)
     frame = project.document.frames.clamp(before)
     if playback.current_frame(session, project) != frame:
-        project.playhead = project.playhead.seek(frame, session.clock())
+        project.timeline.seek(frame, session.clock())
 
 
 @named_action(
@@ -152,8 +152,8 @@ def _selected_or_at_playhead(session: Session, project: Project) -> KeysByChanne
 
     In repeats, it is the key that repeats.
     """
-    if project.selected_keys:
-        return project.selected_keys
+    if project.selection.keys:
+        return project.selection.keys
     here, channel = playback.current_frame(session, project), project.channel
     own = source_frame(project.document, channel, here)
     here = project.document.frames.first if own is None else own
@@ -170,8 +170,8 @@ def set_default_easing(session: Session, easing: Easing) -> None:
 @with_project
 def reverse_selected_keys(session: Session, project: Project) -> None:
     """Reverse the selected keys in time, or the selected channel if fewer are selected."""
-    keys = project.selected_keys
-    if project.selected_key_count < 2:
+    keys = project.selection.keys
+    if project.selection.key_count < 2:
         keys = {project.channel: frames_in(project.document, project.channel)}
     _rearrange(session, project, channel_commands.reverse_keys(keys))
 
@@ -182,15 +182,15 @@ def scale_selected_keys(session: Session, project: Project, factor: float) -> No
 
     If all keys are selected, the ranges of frames are scaled, too.
     """
-    keys = project.selected_keys
-    is_all = project.selected_key_count < 2 or keys == editing.movable_keys(project.document)
+    keys = project.selection.keys
+    is_all = project.selection.key_count < 2 or keys == editing.movable_keys(project.document)
     scale = scene_commands.scale_time(factor)
     _rearrange(session, project, scale if is_all else channel_commands.scale_keys(keys, factor))
 
 
 def _rearrange(session: Session, project: Project, command: Command) -> None:
     """Run a command that moves the selected keys, and select them at their new frames."""
-    keys, everything = project.selected_keys, project.selected_key_count < 2
+    keys, everything = project.selection.keys, project.selection.key_count < 2
     others = {channel: frames_in(project.document, channel) - keys[channel] for channel in keys}
     edit_timing(session, command)
     chosen = {channel: frames_in(project.document, channel) - others[channel] for channel in keys}

@@ -99,9 +99,9 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
         track_commands.put_track(identity, track),
     ):
         project.history.do(command, gesture=gesture)
-    project.timeline.expanded_layers |= {identity}
-    if project.active == identity:
-        project.selected_track = spring.handle
+    project.timeline.show_lanes(identity)
+    if project.selection.active == identity:
+        project.selection.select_track(project.layer, spring.handle)
     text = ngettext(
         "The spring is now a track with {count} key.",
         "The spring is now a track with {count} keys.",

@@ -42,10 +42,7 @@ from app.texts import _
 @with_project
 def set_time_range(_: Session, project: Project, strip: TimeRangeView | None) -> None:
     """Show a range of time; None fits all frames."""
-    if project.timeline.gesture is None:
-        project.timeline.time_range = strip
-    else:
-        project.timeline.gesture_time_range = strip
+    project.timeline.show_range(strip)
 
 
 @named_action(
@@ -64,7 +61,7 @@ def scroll_to_playhead(
     session: Session, project: Project, frame: int, strip: TimeRangeView | None
 ) -> None:
     """Note the playhead's frame, and show a range of time around it if one is given."""
-    project.timeline.last_shown_frame = frame
+    project.timeline.note_shown_frame(frame)
     if strip is not None:
         set_time_range(session, strip)
 
@@ -72,8 +69,7 @@ def scroll_to_playhead(
 @with_project
 def scroll_rows(_: Session, project: Project, to: float) -> None:
     """Scroll the rows to a number of em below the first row; the selected row counts as shown."""
-    project.timeline.scrolled = to
-    project.timeline.last_shown_rows = project.channel, project.timeline.expanded_layers
+    project.timeline.scroll_rows(to, project.channel)
 
 
 @with_project
@@ -81,7 +77,7 @@ def begin_timeline_drag(
     _: Session, project: Project, gesture: TimeGesture, strip: TimeRangeView
 ) -> None:
     """Begin a gesture; the shown range of time is fixed until it ends."""
-    project.timeline.gesture, project.timeline.gesture_time_range = gesture, strip
+    project.timeline.begin_gesture(gesture, strip)
 
 
 @with_project
@@ -100,10 +96,7 @@ def move_timeline_drag(
 
 @with_project
 def end_timeline_drag(_: Session, project: Project) -> None:
-    timing = project.timeline
-    if timing.time_range is not None:
-        timing.time_range = timing.gesture_time_range
-    timing.gesture = timing.gesture_time_range = None
+    project.timeline.end_gesture()
 
 
 @with_project
@@ -122,9 +115,8 @@ def cancel_timeline_drag(session: Session, project: Project) -> None:
 @with_project
 def toggle_lanes(_: Session, project: Project, layer: int) -> None:
     """Show or hide the lanes of a layer's channels; a hidden channel is deselected."""
-    project.timeline.expanded_layers ^= {layer}
-    if layer == project.active and layer not in project.timeline.expanded_layers:
-        project.selected_channel = None
+    if not project.timeline.toggle_lanes(layer) and layer == project.selection.active:
+        project.selection.select_channel(None)
 
 
 def _inside(project: Project, box: KeyBox, frame: float, channel: Channel[Any]) -> KeysByChannel:
@@ -203,7 +195,7 @@ def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> N
             channel: frozenset(key + by for key in frames) for channel, frames in drag.keys.items()
         }
         editing.select_channel_keys(session, chosen)
-    project.timeline.gesture = replace(drag, after=project.document)
+    project.timeline.move_gesture(replace(drag, after=project.document))
 
 
 def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:

@@ -38,7 +38,7 @@ CONVERTING_KEYS = JobKind(_("Moving keys of a track"), _("The track's keys could
 @with_project
 def select_channel(_: Session, project: Project, channel: Channel[Any] | None) -> None:
     """Select a channel, by default the poses; drags then key it if it is a track."""
-    project.selected_channel = channel
+    project.selection.select_channel(channel)
 
 
 @named_action(
@@ -52,7 +52,7 @@ def select_channel(_: Session, project: Project, channel: Channel[Any] | None) -
 @with_project
 def key_selected_handles(session: Session, project: Project) -> None:
     """Key the selected handles at the present frame, not the pose."""
-    key_handles_at_playhead(session, sorted(project.selected_handles))
+    key_handles_at_playhead(session, sorted(project.selection.handles))
 
 
 @with_project
@@ -68,14 +68,16 @@ def key_handles_at_playhead(session: Session, project: Project, handles: Sequenc
     if new:
         frame = playback.edited_frame(session, project)
         key = TrackKey(frame=frame, place=0j, easing=session.settings.preferences.easing)
-        command = track_commands.put_track(project.active, Track(handles=new, keys=(key,)))
+        command = track_commands.put_track(
+            project.selection.active, Track(handles=new, keys=(key,))
+        )
         project.history.do(Command(_("Key handle"), command.change), gesture=gesture)
     known = {layer.track_of(identity) for identity in handles} - {None}
     for track in known:
         if track is not None:
             _key(session, project, track, gesture)
-    project.selected_track = (new or tuple(handles))[0]
-    project.timeline.expanded_layers |= {project.active}
+    project.selection.select_track(project.layer, (new or tuple(handles))[0])
+    project.timeline.show_lanes(project.selection.active)
 
 
 def _key(session: Session, project: Project, track: Track, gesture: object) -> None:

@@ -24,7 +24,7 @@ Work = Callable[[], CorrectionUpdate]
 def is_track_drag_pending(session: Session, project: Project) -> bool:
     """Return whether a handle is dragged on its track; only the shown frame is computed then."""
     is_recorded = project.recording is not None and not project.recording.is_over
-    return is_recorded or (session.active_tool is not None and project.selected_track is not None)
+    return is_recorded or (session.tools.active is not None and project.selected_track is not None)
 
 
 def next_correction_jobs(session: Session, project: Project) -> Iterator[Job]:
@@ -48,7 +48,7 @@ def correction_jobs_for_shown_frame(session: Session, project: Project) -> Itera
 
 
 def _follow(session: Session, project: Project) -> Iterator[Job]:
-    is_playing = project.playhead.since is not None
+    is_playing = project.timeline.playhead.since is not None
     if CORRECTING_SHOWN_FRAME in session.jobs.kinds or (is_playing and project.recording is None):
         # During playback the correction would come too late.
         return
@@ -67,7 +67,7 @@ def _follow(session: Session, project: Project) -> Iterator[Job]:
 
 def _ground(session: Session, project: Project) -> Iterator[Job]:
     wanted = (
-        session.records
+        session.tools.mode == "record"
         or project.selected_track is not None
         or project.track_drags
         or project.recording
@@ -77,7 +77,7 @@ def _ground(session: Session, project: Project) -> Iterator[Job]:
     frames = [carry.frame for carry in project.track_drags]
     frame = frames[0] if frames else playback.current_frame(session, project)
     for clip, runtime, corrected in _corrected(project):
-        if clip.layer.id == project.active:
+        if clip.layer.id == project.selection.active:
             work = corrected.missing_ground(project.document, frame, project.samplers)
             if work is not None:
                 yield _job(session, project, FINDING_BASE_FRAMES, runtime, clip, work)

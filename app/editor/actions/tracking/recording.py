@@ -15,8 +15,9 @@ from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.actions.tracking.track_dragging import commit_track_drags, commit_track_key
 from app.editor.actions.tracking.track_space import base_frame_at, handle_index
 from app.editor.error_reports import report_failure
+from app.editor.parts.tools import CLICK
 from app.editor.project import Project
-from app.editor.session import CLICK, Session, with_project
+from app.editor.session import Session, with_project
 from app.editor.work.track_drag import RecordedSample, Recording, TrackDrag
 from app.errors import LissomError
 from app.motion import BaseMotionFrame, reuse_corrections
@@ -30,9 +31,7 @@ RECORDING_SPEEDS = (1.0, 0.5, 0.25)
 CLOSEST, SMOOTHEST = 0.3, 12.0
 SMOOTHING = 0.5  # initial value
 NO_RECORDING = _("The recording could not be keyed")
-
-
-IDLE = _("Nothing is being recorded.")
+IDLE, CUTTING = _("Nothing is being recorded."), _("Stop cutting out first.")
 
 
 @named_action(
@@ -41,26 +40,26 @@ IDLE = _("Nothing is being recorded.")
     "R",
     icon="CIRCLE",
     hint=_("Record the next drag of a handle, while the timeline plays"),
-    why_disabled=unless(lambda session, _: session.cutting is None, _("Stop cutting out first.")),
-    active=lambda session: session.records,
+    why_disabled=unless(lambda session, _: not session.tools.is_cutting, CUTTING),
+    active=lambda session: session.tools.mode == "record",
 )
 @with_project
 def toggle_recording_armed(session: Session, project: Project) -> None:
     """Arm the next drag of a handle for recording, or disarm it; earlier recordings stay."""
     accept_recording(session)
-    if session.records:
-        session.records = False
+    if session.tools.mode == "record":
+        session.tools.select("pose")
     elif not project.layer.handles:
         session.notices.show(_("Click on the drawing to add a handle. Then drag it to record."))
     else:
         playback.stop_playback(session)
         release_drag(session)
-        session.records, session.moves = True, False
+        session.tools.select("record")
 
 
 def set_recording_speed(session: Session, speed: float) -> None:
     """Set the playback speed while a drag is recorded."""
-    session.recording_speed = speed
+    session.tools.set_recording_speed(speed)
 
 
 @with_project
@@ -68,15 +67,16 @@ def start_recording(
     session: Session, project: Project, handle: int, place: complex, *, gesture: object
 ) -> None:
     """Begin to record a drag of a handle, which is at a place of the scene."""
-    session.records = False
-    track, document, standing = project.layer.track_of(handle), project.document, project.playhead
-    running = replace(standing, speed=session.recording_speed).play(document, session.clock())
+    session.tools.select("pose")
+    track, document = project.layer.track_of(handle), project.document
+    standing = project.timeline.playhead
+    running = replace(standing, speed=session.tools.recording_speed).play(document, session.clock())
     frames, played = document.frames, document.played_frames
     # A recording goes on over a loop's end, at most once round. The end of a preview range jumps.
     goes_round = document.loop and played == frames
-    project.playhead = running
+    project.timeline.put_playhead(running)
     project.recording = Recording(
-        layer=project.active,
+        layer=project.selection.active,
         handle=handle if track is None else track.handles[0],
         gesture=gesture,
         before=track,
@@ -84,7 +84,7 @@ def start_recording(
         last=running.frame + frames.last - frames.first if goes_round else played.last,
         speed=standing.speed,
         place=place,
-        scale=project.view(session.screen).scale,
+        scale=project.view_on(session.display.screen).scale,
         smoothing=SMOOTHING,
     )
 
@@ -105,13 +105,13 @@ def stop_recording(session: Session, project: Project, *, has_moved: bool = True
     take = project.recording
     if take is None or take.is_over:
         return
-    if session.active_tool is take.gesture:
-        session.active_tool = None
+    if session.tools.active is take.gesture:
+        session.tools.end()
     take.is_over, take.has_moved = True, has_moved
-    project.playhead = replace(take.playhead, since=None, speed=take.speed)
-    if take.layer == project.active:
-        project.selected_track = take.handle
-        project.timeline.expanded_layers |= {take.layer}
+    project.timeline.put_playhead(replace(take.playhead, since=None, speed=take.speed))
+    if take.layer == project.selection.active:
+        project.selection.select_track(project.layer, take.handle)
+        project.timeline.show_lanes(take.layer)
 
 
 def accept_recording(session: Session) -> None:
@@ -125,12 +125,15 @@ def accept_recording(session: Session) -> None:
     "record nothing",
     _("Discard recording"),
     "Escape",
-    why_disabled=unless(lambda session, project: session.records or project.recording, IDLE),
+    why_disabled=unless(
+        lambda session, project: session.tools.mode == "record" or project.recording, IDLE
+    ),
 )
 @with_project
 def discard_recording(session: Session, project: Project) -> None:
     """Undo the recording, or disarm recording."""
-    session.records, take = False, project.recording
+    take = project.recording
+    session.tools.leave("record")
     if take is not None:
         stop_recording(session)
         editing.revert_gesture(session, take.gesture)
@@ -140,7 +143,7 @@ def discard_recording(session: Session, project: Project) -> None:
 def retry_recording(session: Session) -> None:
     """Undo the recording, and arm the next drag."""
     discard_recording(session)
-    session.records = True
+    session.tools.select("record")
 
 
 @with_project
@@ -156,16 +159,13 @@ def update_track_drags(session: Session, project: Project) -> None:
     """Advance track drags and the recording; once a frame."""
     if not (project.track_drags or project.recording):
         return
-    project.layer_runtime.corrected = reuse_corrections(
-        project.document, project.active, project.layer_runtime.corrected
-    )
+    active, runtime = project.selection.active, project.layer_runtime
+    runtime.corrected = reuse_corrections(project.document, active, runtime.corrected)
     commit_track_drags(session, project)
     take = project.recording
     if take is None:
         return
-    is_here = take.layer == project.active and any(
-        take.handle == each.id for each in project.layer.handles
-    )
+    is_here = take.layer == active and take.handle in [h.id for h in project.layer.handles]
     if not is_here or (take.after is not None and take.after is not project.document):
         # A later edit or undo replaces the recording's last result.
         accept_recording(session)
@@ -204,7 +204,7 @@ def _record(session: Session, project: Project, take: Recording) -> None:
             place=placement.apply_inverse(take.place),
         )
         commit_track_key(session, project, held)
-    if project.playhead is not take.playhead or time == take.last:
+    if project.timeline.playhead is not take.playhead or time == take.last:
         stop_recording(session)
 
 
@@ -274,7 +274,7 @@ def _values(project: Project, take: Recording) -> list[complex] | None:
         grounds = [
             each for each in (base_frame_at(project, end) for end in ends) if each is not None
         ]
-        placements = project.placed_at(project.active, ends)
+        placements = project.placed_at(project.selection.active, ends)
         if len(grounds) < len(ends) or placements is None:
             return None
         # The body moves between two frames, so the sample is converted at both.

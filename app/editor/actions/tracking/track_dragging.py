@@ -45,7 +45,7 @@ def drag_track_handle(
     playback.stop_playback(session)
     frame = playback.current_frame(session, project)
     begun = TrackDrag(
-        layer=project.active, handle=handle, frame=frame, gesture=gesture, place=place
+        layer=project.selection.active, handle=handle, frame=frame, gesture=gesture, place=place
     )
     project.pending.append(begun)
 
@@ -63,7 +63,7 @@ def rotate_track_handle(
     if track is None or shown is None:
         return
     if not track.keys_rotation:
-        command = track_commands.set_turning(project.active, handle, turns=True)
+        command = track_commands.set_turning(project.selection.active, handle, turns=True)
         project.history.do(command, gesture=gesture)
         text = _("The keys of this track now turn the shape, too.")
         session.notices.show(text, topic="turning")
@@ -73,7 +73,7 @@ def rotate_track_handle(
     playback.stop_playback(session)
     frame, place = playback.current_frame(session, project), shown.handle_positions
     begun = TrackDrag(
-        layer=project.active,
+        layer=project.selection.active,
         handle=handle,
         frame=frame,
         gesture=gesture,
@@ -93,7 +93,7 @@ def cancel_track_drag(project: Project, gesture: object) -> None:
 def commit_track_drags(session: Session, project: Project) -> None:
     """Key the targets of track drags whose base motion is known; once a frame."""
     for held in project.track_drags:
-        is_there = held.layer == project.active and held.handle in [
+        is_there = held.layer == project.selection.active and held.handle in [
             handle.id for handle in project.layer.handles
         ]
         try:

@@ -11,8 +11,9 @@ from app.document import shape_commands
 from app.editor.actions import editing
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.overlay_shapes import CircleShape, ColourRole, LineShape, OverlayShape, StrokeShape
+from app.editor.parts.tools import Hint
 from app.editor.project import Project
-from app.editor.session import Hint, Session
+from app.editor.session import Session
 from app.editor.tools.tool import PointerHit, Tool
 from app.texts import _
 from engine.domain import CUT_WIDTH
@@ -32,10 +33,10 @@ class CutBrushTool(Tool):
 
     @classmethod
     def hints(cls, session: Session, _project: Project, _spot: PointerHit) -> tuple[Hint, ...]:
-        if session.cutting not in {"keep", "remove"}:
+        if session.tools.mode not in {"keep", "remove"}:
             return ()
         keep, remove = _("drag to keep"), _("drag to remove")
-        is_keeping = session.cutting == "keep"
+        is_keeping = session.tools.mode == "keep"
         return (
             Hint(keep if is_keeping else remove),
             Hint(remove if is_keeping else keep, "alt"),
@@ -46,9 +47,9 @@ class CutBrushTool(Tool):
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Begin a stroke; with Alt, swap keep and remove."""
-        if session.cutting not in {"keep", "remove"}:
+        if session.tools.mode not in {"keep", "remove"}:
             return None
-        keeps = (session.cutting == "keep") != spot.alt
+        keeps = (session.tools.mode == "keep") != spot.alt
         radius = cut_out_editing.brush_radius(project)
         return cls(project=project, places=[spot.place], radius=radius, keeps=keeps)
 
@@ -77,8 +78,8 @@ class CutBrushTool(Tool):
         for stroke in layer.cut_out.strokes[0 if known is None else len(known.strokes) :]:
             points = (stroke.points + layer.corner).tolist()
             yield StrokeShape(points=points, radius=stroke.radius, role=brush_role(stroke.keeps))
-        if session.cutting in {"keep", "remove"} and is_brush_shown(session, spot):
-            keeps = (session.cutting == "keep") != spot.alt
+        if session.tools.mode in {"keep", "remove"} and is_brush_shown(session, spot):
+            keeps = (session.tools.mode == "keep") != spot.alt
             yield from brush_ring(spot.place, cut_out_editing.brush_radius(project), keeps, spot.em)
 
     def shapes(self, place: complex, em: float) -> Iterable[OverlayShape]:
@@ -94,7 +95,7 @@ class KnifeTool(Tool):
 
     @classmethod
     def hints(cls, session: Session, _project: Project, _spot: PointerHit) -> tuple[Hint, ...]:
-        if session.cutting != "knife":
+        if session.tools.mode != "knife":
             return ()
         return (
             Hint(_("draw a line between the parts, from outside inwards")),
@@ -104,7 +105,7 @@ class KnifeTool(Tool):
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Begin a line; with Alt, begin a click on a line."""
-        if session.cutting != "knife":
+        if session.tools.mode != "knife":
             return None
         return cls(project=project, places=[spot.place], parts=not spot.alt)
 
@@ -114,7 +115,7 @@ class KnifeTool(Tool):
 
     def end(self, session: Session, place: complex) -> None:
         """Cut along the line, or remove a line."""
-        view = self.project.view(session.screen)
+        view = self.project.view_on(session.display.screen)
         if not self.parts:
             cut_out_editing.remove_knife_cut(session, place, REACH / view.scale)
             return
@@ -144,7 +145,7 @@ class CutClickTool(Tool):
 
     @classmethod
     def hints(cls, session: Session, _project: Project, _spot: PointerHit) -> tuple[Hint, ...]:
-        match session.cutting:
+        match session.tools.mode:
             case "pick":
                 return (Hint(_("click on the background to remove its colour")),)
             case "holes":
@@ -154,12 +155,12 @@ class CutClickTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, _: PointerHit) -> Self | None:
-        return cls(project=project) if session.cutting in {"pick", "holes"} else None
+        return cls(project=project) if session.tools.mode in {"pick", "holes"} else None
 
     def end(self, session: Session, place: complex) -> None:
         act = (
             cut_out_editing.pick_background_colour
-            if session.cutting == "pick"
+            if session.tools.mode == "pick"
             else cut_out_editing.toggle_hole
         )
         act(session, place)
@@ -173,7 +174,7 @@ def _cut(project: Project, points: Sequence[complex]) -> LineShape:
 
 def is_brush_shown(session: Session, spot: PointerHit) -> bool:
     """Return whether a brush shows its ring before a press."""
-    return spot.is_over and session.active_tool is None
+    return spot.is_over and session.tools.active is None
 
 
 def brush_role(keeps: bool | None) -> ColourRole:  # noqa: FBT001 - the only argument

@@ -13,8 +13,9 @@ from app.editor.overlay_shapes import (
     OverlayShape,
     TagShape,
 )
+from app.editor.parts.tools import Hint
 from app.editor.project import Project
-from app.editor.session import Hint, Session
+from app.editor.session import Session
 from app.editor.tools.tool import PointerHit, Tool
 from app.editor.work.motion_setup import MotionSetup
 from app.texts import _
@@ -41,10 +42,10 @@ class JointTool(Tool):
         cls, session: Session, project: Project, spot: PointerHit
     ) -> Iterable[OverlayShape]:
         """Yield joints and bones, each side in its own colour, and the pointed joint's name."""
-        draft = project.motion_setup
-        if draft is None or project.playhead.since is not None:
+        draft = session.tools.motion_setup
+        if draft is None or project.timeline.playhead.since is not None:
             return
-        places = joint_placement.shown_joint_places(project)
+        places = joint_placement.shown_joint_places(session, project)
         for name, place in places.items():
             before = draft.body_kind.parent(name, places)
             if before:
@@ -52,7 +53,7 @@ class JointTool(Tool):
         for name, place in places.items():
             yield KnobShape(centre=place, radius=DOT * spot.em, role=joint_role(name))
         near = find_joint_near(session, project, spot.place)
-        hot = near if session.active_tool is None else draft.selected_joint
+        hot = near if session.tools.active is None else draft.selected_joint
         for name, place in places.items():
             if name in {draft.selected_joint, hot}:
                 yield CircleShape(centre=place, radius=1.7 * DOT * spot.em, role="text", width=0.1)
@@ -70,7 +71,7 @@ class JointTool(Tool):
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Grab a joint, or leave it out."""
-        name, draft = find_joint_near(session, project, spot.place), project.motion_setup
+        name, draft = find_joint_near(session, project, spot.place), session.tools.motion_setup
         if draft is None:
             return None
         if name is None:
@@ -85,16 +86,16 @@ class JointTool(Tool):
     def move(self, session: Session, place: complex) -> None:
         """Move the joint to the pointer, within the drawing."""
         self.is_drag = self.is_drag or self.is_away(session, self.start, place)
-        if self.is_drag and self.project.motion_setup is not None:
-            self.project.motion_setup = self.draft
+        if self.is_drag and session.tools.motion_setup is not None:
+            session.tools.select(self.draft)
             joint_placement.move_shown_joint(session, self.name, place)
 
     def end(self, session: Session, place: complex) -> None:
         self.move(session, place)
 
-    def cancel(self, _: Session) -> None:
-        if self.project.motion_setup is not None:
-            self.project.motion_setup = self.draft
+    def cancel(self, session: Session) -> None:
+        if session.tools.motion_setup is not None:
+            session.tools.select(self.draft)
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
@@ -108,9 +109,10 @@ def joint_role(name: str) -> ColourRole:
 
 def find_joint_near(session: Session, project: Project, place: complex) -> str | None:
     """Return the joint nearest to a place, within reach."""
-    reach = REACH / project.view(session.screen).scale
+    reach = REACH / project.view_on(session.display.screen).scale
     away = {
-        name: abs(at - place) for name, at in joint_placement.shown_joint_places(project).items()
+        name: abs(at - place)
+        for name, at in joint_placement.shown_joint_places(session, project).items()
     }
     nearest = min(away, key=away.__getitem__, default=None)
     return nearest if nearest is not None and away[nearest] <= reach else None

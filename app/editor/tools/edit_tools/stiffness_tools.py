@@ -6,8 +6,9 @@ from typing import Self
 
 from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
 from app.editor.overlay_shapes import AreaShape, ColourRole, LineShape, OverlayShape
+from app.editor.parts.tools import Hint
 from app.editor.project import Project
-from app.editor.session import Hint, Session
+from app.editor.session import Session
 from app.editor.tools.edit_tools.cut_out_tools import (
     brush_ring,
     brush_stroke,
@@ -38,7 +39,7 @@ class StiffnessBrushTool(Tool):
 
     @classmethod
     def mode(cls, session: Session, _project: Project) -> str:
-        return MODES.get(session.material or "", "")
+        return MODES.get(session.tools.stiffness_tool or "", "")
 
     @classmethod
     def hints(cls, session: Session, _project: Project, _spot: PointerHit) -> tuple[Hint, ...]:
@@ -46,18 +47,18 @@ class StiffnessBrushTool(Tool):
             "stiff": _("drag to make a part stiff"),
             "soft": _("drag to make a part soft"),
             "normal": _("drag to make a part normal again"),
-        }.get(session.material or "")
+        }.get(session.tools.stiffness_tool or "")
         return () if text is None else (Hint(text), Hint(_("[ and ] for the brush size")))
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        if session.material not in stiffness_editing.BRUSHES:
+        if session.tools.stiffness_tool not in stiffness_editing.BRUSHES:
             return None
         return cls(
             project=project,
             places=[spot.place],
             radius=cut_out_editing.brush_radius(project),
-            stiffens=stiffness_editing.BRUSHES[session.material],
+            stiffens=stiffness_editing.BRUSHES[session.tools.stiffness_tool],
         )
 
     def move(self, _: Session, place: complex) -> None:
@@ -75,9 +76,11 @@ class StiffnessBrushTool(Tool):
         cls, session: Session, project: Project, spot: PointerHit
     ) -> Iterable[OverlayShape]:
         """Return the ring of the brush."""
-        if session.material not in stiffness_editing.BRUSHES or not is_brush_shown(session, spot):
+        if session.tools.stiffness_tool not in stiffness_editing.BRUSHES or not is_brush_shown(
+            session, spot
+        ):
             return ()
-        stiffens = stiffness_editing.BRUSHES[session.material]
+        stiffens = stiffness_editing.BRUSHES[session.tools.stiffness_tool]
         return brush_ring(spot.place, cut_out_editing.brush_radius(project), stiffens, spot.em)
 
     def shapes(self, place: complex, em: float) -> Iterable[OverlayShape]:
@@ -95,7 +98,7 @@ class BoneTool(Tool):
 
     @classmethod
     def hints(cls, session: Session, _project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        if session.material != "bone":
+        if session.tools.mode != "bone":
             return ()
         if spot.handle is None:
             return (Hint(_("drag from handle to handle to add a bone")),)
@@ -104,7 +107,7 @@ class BoneTool(Tool):
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Begin a bone at a handle."""
-        if session.material != "bone" or spot.handle is None:
+        if session.tools.mode != "bone" or spot.handle is None:
             return None
         return cls(project=project, handle=spot.handle, place=spot.place)
 
@@ -132,7 +135,7 @@ class BoneTool(Tool):
 
     def _near(self, session: Session, place: complex) -> int | None:
         """Return the other handle nearest to a place, within reach."""
-        reach = REACH / self.project.view(session.screen).scale
+        reach = REACH / self.project.view_on(session.display.screen).scale
         away = {
             i: abs(at - place) for i, at in handle_places(self.project).items() if i != self.handle
         }

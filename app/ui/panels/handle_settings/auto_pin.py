@@ -19,12 +19,14 @@ def draw_auto_pin(look: Look, project: Project, handle: Handle) -> list[Action]:
         _("Let the handle move between two keys with equal targets. Otherwise it stays in place.")
     )
     if changed:
-        command = handle_commands.unpin_handles(project.active, frozenset({handle.id}), free=free)
+        command = handle_commands.unpin_handles(
+            project.selection.active, frozenset({handle.id}), free=free
+        )
         actions.append(do(editing.edit_document, command))
     if not layer.has_auto_pins:
         small_text(look, _("Auto-pin is off in this layer: handles with equal targets can move."))
         hint = _("Keep handles in place between two keys with equal targets")
         if text_button(_("Turn on auto-pin"), FILL, hint):
-            command = shape_commands.set_auto_pins(project.active, enabled=True)
+            command = shape_commands.set_auto_pins(project.selection.active, enabled=True)
             actions.append(do(editing.edit_document, command))
     return actions

@@ -28,7 +28,7 @@ def draw_depth_settings(
     is_pointed = imgui.is_item_hovered(imgui.HoveredFlags_.rect_only) and imgui.is_window_hovered(
         imgui.HoveredFlags_.allow_when_blocked_by_active_item
     )
-    if is_pointed != (session.tint == "depth"):
+    if is_pointed != (session.display.tint == "depth"):
         actions.append(do(viewing.set_tint, "depth" if is_pointed else None))
     return actions
 

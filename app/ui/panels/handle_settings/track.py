@@ -109,13 +109,13 @@ def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Ac
     changed, enabled = imgui.checkbox(_("on") + "##track", track.enabled)
     draw_tooltip(_("Switch the track on or off. Its keys stay."))
     if changed:
-        command = track_commands.enable_track(project.active, handle.id, enabled=enabled)
+        command = track_commands.enable_track(project.selection.active, handle.id, enabled=enabled)
         actions.append(do(editing.edit_document, command))
     imgui.same_line()
     changed, turns = imgui.checkbox(_("Key rotation"), track.keys_rotation)
     draw_tooltip(_("Let the keys turn the shape at the handle. Otherwise it turns freely."))
     if changed:
-        command = track_commands.set_turning(project.active, handle.id, turns=turns)
+        command = track_commands.set_turning(project.selection.active, handle.id, turns=turns)
         actions.append(do(editing.edit_document, command))
     return actions
 

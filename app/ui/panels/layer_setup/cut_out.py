@@ -189,7 +189,7 @@ def _tool(
 ) -> list[Action]:
     """Draw a tool's button. The active tool is highlighted, and its button ends it."""
     palette = look.palette
-    is_chosen = session.cutting == tool
+    is_chosen = session.tools.mode == tool
     imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)
     imgui.push_style_color(imgui.Col_.text, palette.on_accent if is_chosen else palette.text)
     pressed = imgui.button(f"{text}###{tool} tool", ImVec2(width, 0))
@@ -205,7 +205,7 @@ def _state(session: Session, look: Look, project: Project) -> list[Action]:
     if resolver is not None and resolver.meshing is not None:
         if progress_bar(resolver.progress, resolver.status_text):
             actions.append(do(resolving.cancel_solving_keys))
-    elif session.cutting is not None:
+    elif session.tools.is_cutting:
         hint, keys = _("Show the posed drawing"), shown_keys(move_tool.return_to_posing)
         if text_button(_("Back to posing") + "###done", FILL, hint, keys):
             actions.append(do(cut_out_editing.toggle_cut_tool, None))

@@ -36,7 +36,7 @@ SHOWN: tuple[tuple[OverlayName, str, str], ...] = (
 
 def draw_domain_panel(session: Session, look: Look, project: Project) -> list[Action]:
     heading(look, _("Show"))
-    actions = _toggles(session.overlays)
+    actions = _toggles(session.display.overlays)
     heading(look, _("Info"))
     _facts(look, project)
     heading(look, _("Rebuild"))

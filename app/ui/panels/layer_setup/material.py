@@ -4,7 +4,7 @@ import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Layer, stiffness_commands
-from app.editor import Action, MaterialTool, Project, Session, do
+from app.editor import Action, Project, Session, StiffnessTool, do
 from app.editor.actions import editing, viewing
 from app.editor.actions.layer_setup import cut_out_editing, resolving, stiffness_editing
 from app.editor.actions.posing.pose_drag import pose_at_playhead
@@ -31,7 +31,7 @@ AMOUNTS = Scale(
     left=1 / stiffness_editing.SOFTEST, right=stiffness_editing.STRONGEST, logarithmic=True
 )
 SOFTNESSES = Scale(left=0.0, right=1.0)
-TOOLS: tuple[tuple[MaterialTool, str, str, str], ...] = (
+TOOLS: tuple[tuple[StiffnessTool, str, str, str], ...] = (
     ("stiff", icons.ICON_FA_CUBE, _("Stiff"), _("Brush over parts that bend and stretch less")),
     ("soft", icons.ICON_FA_FEATHER, _("Soft"), _("Brush over parts that bend and stretch more")),
     ("normal", icons.ICON_FA_ERASER, _("Normal"), _("Brush over parts to make them normal again")),
@@ -50,7 +50,7 @@ def draw_material_panel(session: Session, look: Look, project: Project) -> list[
     heading(look, _("Brush"), framed=True)
     align_right(1.15 * imgui.get_frame_height())
     hint, is_painted = _("Delete all strokes; bones stay"), layer.stiffness is not None
-    actions = [] if session.tint == "stiffness" else [do(viewing.set_tint, "stiffness")]
+    actions = [] if session.display.tint == "stiffness" else [do(viewing.set_tint, "stiffness")]
     if icon_button(look, icons.ICON_FA_TRASH, "clear material", hint, enabled=is_painted):
         actions.append(do(editing.edit_layer, stiffness_commands.clear_stiffness))
     actions += _tools(session, look) + _brush(session, look, project)
@@ -66,7 +66,7 @@ def _tools(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
     palette, widths = look.palette, split_line(len(TOOLS))
     for (tool, icon, name, hint), width in zip(TOOLS, widths, strict=True):
-        is_chosen = session.material == tool
+        is_chosen = session.tools.mode == tool
         imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)
         imgui.push_style_color(imgui.Col_.text, palette.on_accent if is_chosen else palette.text)
         if imgui.button(f"{icon}  {name}###{tool} tool", ImVec2(width, 0)):
@@ -85,12 +85,12 @@ def _brush(session: Session, look: Look, project: Project) -> list[Action]:
         actions.append(do(cut_out_editing.set_brush_radius, entered.value))
     label(look, _("Strength"))
     hint = _("How many times stiffer or softer the brush makes the shape")
-    entered = slider(look, "strength", session.strength, STRENGTHS, text="%.1f ×", hint=hint)
+    entered = slider(look, "strength", session.tools.strength, STRENGTHS, text="%.1f ×", hint=hint)
     if entered is not None:
         actions.append(do(stiffness_editing.set_stiffness_strength, entered.value))
     label(look, _("Soft edge"))
     hint = _("How much of the radius fades out")
-    entered = slider(look, "softness", session.softness, SOFTNESSES, hint=hint)
+    entered = slider(look, "softness", session.tools.softness, SOFTNESSES, hint=hint)
     if entered is not None:
         actions.append(do(stiffness_editing.set_brush_softness, entered.value))
     small_text(
@@ -100,8 +100,8 @@ def _brush(session: Session, look: Look, project: Project) -> list[Action]:
             "as a limb is thick."
         ),
     )
-    if session.material == "stiff":
-        small_text(look, _describe_limits(project.layer, session.strength))
+    if session.tools.mode == "stiff":
+        small_text(look, _describe_limits(project.layer, session.tools.strength))
     return actions
 
 

@@ -92,7 +92,7 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     )
     if item(text.format(count=count), icons.ICON_FA_LOCK):
         actions.append(do(toggle_layers_locked, *whom))
-    alone = project.solo == set(whom)
+    alone = project.layer_list.solo == set(whom)
     text = _("End solo") if alone else ngettext("Solo", "Solo {count} layers", count)
     if item(text.format(count=count), SOLO):
         actions.append(do(solo_layers, *whom))
@@ -102,7 +102,7 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     if item(
         _("Group layers"),
         icons.ICON_FA_FOLDER_PLUS,
-        enabled=is_many or not project.other_selected_layers,
+        enabled=is_many or not project.selection.other_layers,
     ):
         actions.append(do(select_layers, *whom))
         actions.append(do(group_layers))
@@ -163,7 +163,7 @@ def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     locked = all(project.document.layer(each).locked for each in row.layers)
     if item(_("Unlock") if locked else _("Lock"), icons.ICON_FA_LOCK):
         actions.append(do(toggle_layers_locked, *row.layers))
-    alone = project.solo == set(row.layers)
+    alone = project.layer_list.solo == set(row.layers)
     if item(_("End solo") if alone else _("Solo"), SOLO):
         actions.append(do(solo_layers, *row.layers))
     whole = subgroups_with_layers(project.document, group.name)

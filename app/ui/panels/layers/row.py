@@ -179,7 +179,7 @@ def _signs(project: Project, row: TreeRow) -> list[str]:
     signs += [icons.ICON_FA_LINK] if layer.has_parent else []
     signs += [icons.ICON_FA_IMAGE] if layer.still else []
     signs += [icons.ICON_FA_BAN] if layer.reference else []
-    return signs + ([icons.ICON_FA_BINOCULARS] if layer.id in project.solo else [])
+    return signs + ([icons.ICON_FA_BINOCULARS] if layer.id in project.layer_list.solo else [])
 
 
 def draw_row_text(

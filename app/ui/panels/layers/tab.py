@@ -48,7 +48,7 @@ def _summary(look: Look, project: Project) -> list[Action]:
         return []
     count = len(summary.warnings)
     title = _("Differences: {count}").format(count=count) if count else _("Imported as drawn")
-    imgui.set_next_item_open(project.is_import_log_open)
+    imgui.set_next_item_open(project.layer_list.is_import_log_open)
     is_open = imgui.tree_node_ex(f"{title}###summary", _FOLD)
     actions = [do(dialog_actions.toggle_import_log)] if imgui.is_item_toggled_open() else []
     if not is_open:
@@ -68,7 +68,7 @@ def _offers(look: Look, project: Project) -> list[Action]:
     """Draw the offers to make a switch of a group whose name suggests one, like mouths."""
     actions: list[Action] = []
     for path, layers in suggest_switch_groups(project.document):
-        if path in project.dismissed_suggestions:
+        if path in project.layer_list.dismissed_suggestions:
             continue
         name = path.rpartition("/")[2]
         imgui.push_id(path)

@@ -74,7 +74,7 @@ def draw_layer_tree(
     clipper.begin(len(rows), pitch)
     for number, row in enumerate(rows):
         # Scroll to the active layer, and to a layer that is being renamed.
-        if row.layer and row.layer.id in {project.active, session.named_layer}:
+        if row.layer and row.layer.id in {project.selection.active, project.layer_list.named_layer}:
             clipper.include_item_by_index(number)
     while clipper.step():
         for row in rows[clipper.display_start : clipper.display_end]:
@@ -83,14 +83,18 @@ def draw_layer_tree(
     imgui.dummy(ImVec2(0, 0))
     scroll_while_dragged(look, ROW)
     imgui.end_child()
-    if project.last_listed_layer != project.active:
+    if project.layer_list.last_listed_layer != project.selection.active:
         actions.append(do(note_listed_layer))
     return actions
 
 
 def _bar(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    active, layers, chosen = project.active, project.document.layers, project.selected_layers
+    active, layers, chosen = (
+        project.selection.active,
+        project.document.layers,
+        project.selected_layers,
+    )
     index, last = layers.index(project.layer), len(layers) - 1
 
     def button(icon: str, name: str, hint: str, action: Action, *, enabled: bool = True) -> None:
@@ -158,8 +162,12 @@ def _row(
         actions.append(_chosen(row))
     after = imgui.get_cursor_screen_pos()
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    is_active = layer is not None and layer.id == project.active
-    if is_active and project.last_listed_layer != project.active and not imgui.is_item_visible():
+    is_active = layer is not None and layer.id == project.selection.active
+    if (
+        is_active
+        and project.layer_list.last_listed_layer != project.selection.active
+        and not imgui.is_item_visible()
+    ):
         imgui.set_scroll_here_y(0.5)
     if layer is not None and imgui.is_mouse_hovering_rect(low, high):
         # While another program drags a file here, nothing else is hovered.
@@ -168,7 +176,7 @@ def _row(
     actions += drag_layer_row(look, project, row, low, high)
     draw_row_tooltip(project.document, row)
     chosen, asks = draw_layer_menu(project, row)
-    actions += chosen + _naming(session, look, project, row, low, asks=is_named or asks)
+    actions += chosen + _naming(look, project, row, low, asks=is_named or asks)
     middle = (low.y + high.y) / 2
     imgui.set_cursor_screen_pos(ImVec2(corner.x, middle - imgui.get_frame_height() / 2))
     frame = playback.current_frame(session, project)
@@ -224,18 +232,16 @@ def _is_seen(project: Project, row: TreeRow, frame: int) -> bool:
     document = project.document
     return any(
         is_visible(document, document.layer(each), frame)
-        and (not project.solo or each in project.solo)
+        and (not project.layer_list.solo or each in project.layer_list.solo)
         for each in row.layers
     )
 
 
-def _naming(
-    session: Session, look: Look, project: Project, row: TreeRow, low: ImVec2, *, asks: bool
-) -> list[Action]:
+def _naming(look: Look, project: Project, row: TreeRow, low: ImVec2, *, asks: bool) -> list[Action]:
     """Draw the rename field of a row, if requested."""
     actions: list[Action] = []
     document, layer = project.document, row.layer
-    if asks or (layer is not None and session.named_layer == layer.id):
+    if asks or (layer is not None and project.layer_list.named_layer == layer.id):
         imgui.open_popup(f"name {row.key}")
         actions.append(do(ask_layer_name, None))
     imgui.set_next_window_pos(low)

@@ -38,7 +38,7 @@ FACINGS = {None: _("Automatic"), -1: _("Left"), 1: _("Right")}
 
 def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the motion setup or its progress; otherwise the layer's applied motions."""
-    job, draft = project.motion_job, project.motion_setup
+    job, draft = project.motion_job, session.tools.motion_setup
     if job is not None:
         heading(look, _("Applying “{preset}”").format(preset=job.setup.preset.label))
         return (
@@ -51,15 +51,15 @@ def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Ac
     # The end buttons stay visible while the rest scrolls.
     lines = (
         1
-        + bool(preset_setup.apply_motion_disabled_reason(project))
-        + preset_setup.is_applied_motion_edited(project)
+        + bool(preset_setup.apply_motion_disabled_reason(session, project))
+        + preset_setup.is_applied_motion_edited(session, project)
     )
     below = (2.0 + 1.5 * lines) * look.em + imgui.get_frame_height()
     imgui.begin_child("draft", ImVec2(0, max(imgui.get_content_region_avail().y - below, 1.0)))
     actions = _kinds(look, draft) + _motions(look, draft)
     actions += _joints(session, look, draft) + _parameters(look, draft)
     imgui.end_child()
-    return actions + _end(look, project, draft)
+    return actions + _end(session, look, project, draft)
 
 
 def _draw_applied_motions(session: Session, look: Look, project: Project) -> list[Action]:
@@ -231,16 +231,16 @@ def _switches(look: Look, draft: MotionSetup) -> list[Action]:
     return actions
 
 
-def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
+def _end(session: Session, look: Look, project: Project, draft: MotionSetup) -> list[Action]:
     """Draw which motions are replaced, and the buttons that apply or cancel."""
     actions: list[Action] = []
     imgui.separator()
-    if draft.applied_motion is not None and preset_setup.is_applied_motion_edited(project):
+    if draft.applied_motion is not None and preset_setup.is_applied_motion_edited(session, project):
         changed, replaces = imgui.checkbox(_("Replace edits"), draft.replaces_edits)
         if changed:
             actions.append(do(preset_setup.set_motion_options, replaces_edits=replaces))
     small_text(look, _where(project, draft))
-    reason = preset_setup.apply_motion_disabled_reason(project)
+    reason = preset_setup.apply_motion_disabled_reason(session, project)
     if reason:
         small_text(look, reason, look.palette.warning)
     widths = split_line(2)

@@ -55,7 +55,7 @@ def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[
 
 def begin_key_box(bands: TimelineLayout) -> list[Action]:
     """Begin a box selection of keys. With Shift, it adds to the selected keys."""
-    keeps = bands.project.selected_keys if imgui.get_io().key_shift else {}
+    keeps = bands.project.selection.keys if imgui.get_io().key_shift else {}
     box = KeyBox(start=bands.pointed, channel=bands.pointed_channel, keeps=keeps)
     return [do(timeline_drag.begin_timeline_drag, box, bands.time_view)]
 

@@ -99,7 +99,7 @@ def _keys(bands: TimelineLayout, lane: GroupRow) -> list[Action]:
     actions: list[Action] = []
     document, em = bands.project.document, bands.look.em
     layers = [document.layer(identity) for identity in lane.row.layers]
-    chosen_of = bands.project.selected_keys
+    chosen_of = bands.project.selection.keys
     at: dict[int, list[int]] = {}
     for layer in layers:
         for index in bands.in_view(layer.keys):
@@ -210,7 +210,7 @@ def _edge(bands: TimelineLayout, lane: GroupRow, switch: SwitchGroup, start: int
     box = ImVec2(x - EDGE * em, lane.top), ImVec2(x + EDGE * em, lane.bottom)
     bands.button(f"edge {origin}", *box, right=True)
     palette = bands.look.palette
-    is_chosen = start in bands.project.selected_keys.get(channel, ())
+    is_chosen = start in bands.project.selection.keys.get(channel, ())
     is_hot = is_hovered_or_held() or is_key_dragged(gesture, channel, start)
     colour = palette.accent if is_chosen else palette.text if is_hot else palette.anchor
     top, bottom = ImVec2(x, lane.top + 2), ImVec2(x, lane.bottom - 2)

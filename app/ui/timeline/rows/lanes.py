@@ -243,7 +243,7 @@ def _draw_key(
 ) -> None:
     palette, em = bands.look.palette, bands.look.em
     tangent = TangentMode.HOLD if lane.channel.kind.is_held else key.shown_tangent_mode
-    is_chosen = key.frame in bands.project.selected_keys.get(lane.channel, ())
+    is_chosen = key.frame in bands.project.selection.keys.get(lane.channel, ())
     is_on = lane.track is None or lane.track.enabled
     colour = palette.text if is_on else palette.dim
     if is_chosen:

@@ -210,7 +210,7 @@ def _draw_summary(bands: TimelineLayout, row: LayerRow) -> list[Action]:
         origin = find_drag_origin(gesture, channel, pressed)
         box = ImVec2(x - 1.4 * half, y - 1.4 * half), ImVec2(x + 1.4 * half, y + 1.4 * half)
         bands.button(f"keys {origin}", *box, right=True)
-        chosen = bands.project.selected_keys
+        chosen = bands.project.selection.keys
         is_chosen = all(at <= chosen.get(each, frozenset()) for each, at in keys_here.items())
         colour = palette.text if is_hovered_or_held() else palette.anchor
         imgui.get_window_draw_list().add_ngon_filled(

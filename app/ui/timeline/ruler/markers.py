@@ -68,7 +68,7 @@ def draw_markers(bands: TimelineLayout) -> list[Action]:
 def _draw(bands: TimelineLayout, marker: Marker, x: float, text: str) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     hot = is_hovered_or_held()
-    is_chosen = marker.frame in bands.project.selected_keys.get(MARKERS, ())
+    is_chosen = marker.frame in bands.project.selection.keys.get(MARKERS, ())
     colour = palette.accent if hot or is_chosen else palette.anchor
     top, bottom = bands.markers_top + 0.15 * em, bands.camera_top - 0.1 * em
     waist = top + 0.55 * (bottom - top)

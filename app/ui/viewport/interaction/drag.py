@@ -15,7 +15,7 @@ AXES = ((imgui.Key.x, "x"), (imgui.Key.y, "y"))
 
 def follow_pointer(session: Session, look: Look, screen: ScreenMapping) -> list[Action]:
     """Continue the gesture at the pointer. End it when the button is released."""
-    gesture = session.active_tool
+    gesture = session.tools.active
     if gesture is None:
         return []
     if imgui.is_key_pressed(imgui.Key.escape) or imgui.is_mouse_clicked(imgui.MouseButton_.right):
@@ -24,7 +24,7 @@ def follow_pointer(session: Session, look: Look, screen: ScreenMapping) -> list[
     io, pointer = imgui.get_io(), screen.pointer
     actions: list[Action] = []
     # A Ctrl released after Ctrl+Z must not drag again if the tool takes no steps.
-    is_stepped = gesture.snaps and io.key_ctrl != session.is_snapping
+    is_stepped = gesture.snaps and io.key_ctrl != session.tools.is_snapping
     # A recording continues while the pointer rests.
     is_recorded = screen.project.recording is not None and not screen.project.recording.is_over
     if io.mouse_delta.x or io.mouse_delta.y or is_stepped or is_recorded:

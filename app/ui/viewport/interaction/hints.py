@@ -30,18 +30,18 @@ KEYS = {"ctrl": (CTRL,), "shift": (SHIFT,), "alt": (ALT,), "ctrl+shift": (SHIFT,
 def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
     """Return the possible gestures at the pointer."""
     project = screen.project
-    if session.active_tool is not None:
-        return _sentence([*map(_format_hint, session.active_tool.active_hints), _("Esc cancels")])
-    if session.cutting is None and project.playhead.since is not None:
+    if session.tools.active is not None:
+        return _sentence([*map(_format_hint, session.tools.active.active_hints), _("Esc cancels")])
+    if not session.tools.is_cutting and project.timeline.playhead.since is not None:
         return _("Space stops")
-    if session.is_posing and not session.overlays.handles:
+    if session.tools.is_posing and not session.display.overlays.handles:
         return _("The handles are hidden: {key} shows them").format(key=shown_keys(viewing.HANDLES))
     hints = [
         _format_hint(hint)
         for tool in tools_of(session)
         for hint in tool.hints(session, project, spot)
     ]
-    if not session.is_posing:
+    if not session.tools.is_posing:
         return _sentence([*hints, _("Esc goes back to posing")])
     if spot.handle is not None:
         if spot.handle in find_auto_pinned(screen.shown):
@@ -67,7 +67,7 @@ def draw_badges(
 ) -> list[Action]:
     """Draw special states: a pose without a key, the active tool, or the next step."""
     top = corner + ImVec2(room.x / 2, look.em)
-    if project.unkeyed_pose is not None and session.cutting is None:
+    if project.unkeyed_pose is not None and not session.tools.is_cutting:
         return _draw_pill(look, _("Unkeyed pose"), top, keys.insert_key_in_row)
     mode = next(filter(None, (tool.mode(session, project) for tool in tools_of(session))), "")
     if mode:
@@ -90,7 +90,7 @@ def find_first_step(project: Project) -> int | None:
     layer = project.layer
     if not layer.handles:
         return 0
-    if len(layer.keys) > 1 or project.playhead.since is not None:
+    if len(layer.keys) > 1 or project.timeline.playhead.since is not None:
         return None
     return 2 if tutorials.is_first_pose_changed(layer) else 1
 

@@ -31,7 +31,7 @@ def add_track_key_gizmos(
         Whether a key was pressed.
     """
     hovered, pressed = None, False
-    if not session.is_posing or screen.project.playhead.since is not None:
+    if not session.tools.is_posing or screen.project.timeline.playhead.since is not None:
         return hovered, pressed
     radius = ImVec2(KEY_GRIP * look.em, KEY_GRIP * look.em)
     for frame, place in find_path_keys(screen.project):

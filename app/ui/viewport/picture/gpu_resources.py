@@ -133,7 +133,7 @@ class GpuResources:
         """Return the view of the active layer while it is cut out."""
         if self._cut_view is None or self._cut_view.runtime is not self.project.layer_runtime:
             self._forget_cut_view()
-            self._cut_view = CutView(self._renderer, self.project, self.project.active)
+            self._cut_view = CutView(self._renderer, self.project, self.project.selection.active)
         return self._cut_view
 
     def _forget_cut_view(self) -> None:

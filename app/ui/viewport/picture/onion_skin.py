@@ -23,7 +23,7 @@ GHOST_OPACITY = 0.38
 
 def make_ghosts(session: Session, project: Project, drawing: GpuResources) -> tuple[Ghost, ...]:
     """Return the onion skins of all layers that are visible then and look different."""
-    if project.playhead.since is not None or project.layer_runtime.shown is None:
+    if project.timeline.playhead.since is not None or project.layer_runtime.shown is None:
         return ()
     preferences, now = session.settings.preferences, project.layer_runtime.shown.frame
     ghosts = []
@@ -68,7 +68,7 @@ def _ghost(
     if known is None or (at not in known.frames and not known.loop):
         return None
     placed = project.placed_at(layer.id, [now, at])
-    if project.solo and layer.id not in project.solo:
+    if project.layer_list.solo and layer.id not in project.layer_list.solo:
         return None
     was_seen, is_seen = (is_visible(document, layer, document.loop_frame(f)) for f in (now, at))
     stays = (
@@ -99,7 +99,7 @@ def count_meshes_behind(session: Session, project: Project, meshes: int) -> int:
         for each in document.layers
         if (shown := shows[each.id].shown) is not None
         and is_visible(document, each, shown.frame)
-        and (not project.solo or each.id in project.solo)
+        and (not project.layer_list.solo or each.id in project.layer_list.solo)
     }
     return sum(1 for _ in takewhile(_is_still, composite_layers(document, still, frame)))
 

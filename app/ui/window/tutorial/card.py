@@ -51,7 +51,7 @@ class Callout:
 
         `places` has the rectangles of items in the frame before, by their names.
         """
-        guide, project = session.tutorial, session.project
+        guide, project = session.tutorial.state, session.project
         if guide is None or guide.project is not project or project is None:
             return []
         viewport = imgui.internal.find_window_by_name("###Viewport")
@@ -93,13 +93,13 @@ class Callout:
     ) -> None:
         """Choose the card's place, unless the card already has one for this step."""
         project = screen.project
-        if self._key and (session.active_tool or project.timeline.gesture):
+        if self._key and (session.tools.active or project.timeline.gesture):
             return
         boxes = lead.uncovered
         corners = [corner for box in (*rooms, *boxes) for corner in box]
         sides = (side / 4 for corner in corners for side in corner)
         # During playback the card stays in place.
-        pose = None if project.playhead.since is not None else screen.shown.pose
+        pose = None if project.timeline.playhead.since is not None else screen.shown.pose
         key = (guide.stage, lead.text, *self._size, pose, *map(round, sides))
         if key == self._key:
             return

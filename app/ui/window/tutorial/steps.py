@@ -90,11 +90,11 @@ def _to_step(
 
 def _hindrance(session: Session) -> str:
     """Return the step that must come before handles can be added and dragged; else ""."""
-    if not session.is_posing:
+    if not session.tools.is_posing:
         return _("Another tool is active: {keys} goes back to posing.").format(
             keys=shown_keys(move_tool.return_to_posing)
         )
-    if not session.overlays.handles:
+    if not session.display.overlays.handles:
         return _("The handles are hidden: {key} shows them.").format(
             key=shown_keys(viewing.HANDLES)
         )

@@ -41,14 +41,14 @@ def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
         pose = project.layer.key(frame).pose
         assert (pose.phi is bent.phi, pose.psi is bent.psi) == (True, True)
         assert pose.targets == bent.targets
-        assert project.selected_frames == {frame}
+        assert project.selection.frames == {frame}
         editing.undo(session)
         assert project.document is before
 
 
 def test_in_the_timeline_the_one_chosen_key_is_copied_wherever_the_playhead_is(session):
     editing.select_keys(session, frozenset({6}))
-    for session.is_timeline_focused, frame in ((True, 6), (False, 0)):
+    for session.display.is_timeline_focused, frame in ((True, 6), (False, 0)):
         copying.copy_pose_or_keys(session)
         assert session.clipboard.poses[0].keys[0].pose is session.project.layer.key(frame).pose
 
@@ -62,7 +62,7 @@ def test_several_keys_are_pasted_with_their_ways_and_distances(session):
     go(session, 4)
     pasting.paste_copied(session)
     assert project.layer.key_frames == {0, 4, 6, 10}
-    assert project.selected_frames == {4, 10}
+    assert project.selection.frames == {4, 10}
     assert project.layer.key(4).pose is project.layer.key(0).pose
     assert project.layer.key(4).easing == HOLD
     assert project.layer.key(10).pose is project.layer.key(6).pose
@@ -156,6 +156,6 @@ def test_a_pose_that_no_key_holds_is_copied_and_gives_way_to_a_pasted_one(sessio
     assert project.unkeyed_pose is None
     editing.undo(session)
     assert project.unkeyed_pose is unkeyed
-    project.selected_frames = frozenset()
+    project.selection.deselect_keys()
     copying.copy_pose_or_keys(session)
     assert session.clipboard.poses[0].keys[0].pose is unkeyed

@@ -30,14 +30,14 @@ def session(tmp_path):
 
 def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
     project, before = session.project, session.project.document
-    depth = Channel(DEPTH, project.active, 0)
-    chosen = {pose_channel(project.active): frozenset({0, 6}), depth: frozenset({0})}
+    depth = Channel(DEPTH, project.selection.active, 0)
+    chosen = {pose_channel(project.selection.active): frozenset({0, 6}), depth: frozenset({0})}
     editing.select_channel_keys(session, chosen)
     copying.copy_keys(session)
     playback.scrub(session, 20)
     pasting.paste_copied(session, "flipped")
     settle(session)
-    assert project.selected_frames == {20, 26}
+    assert project.selection.frames == {20, 26}
     assert (project.layer.key(20).revolutions, project.layer.key(26).revolutions) == (-2, 1)
     assert project.layer.keys_of(DEPTH, 0) == (DEPTH.key(0, 1.0),)
     assert project.layer.keys_of(DEPTH, 1) == (DEPTH.key(20, 1.0),)

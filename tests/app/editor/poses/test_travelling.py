@@ -113,7 +113,7 @@ def test_a_pose_is_pasted_onto_another_layer_as_one_step(session):
     check_invariants(session)
     close(ways(session, "far leg", 12), ways(session, "near leg", 0))
     assert layer(session, "far leg").key(12).pose.certificate.is_certified
-    assert project.selected_frames == {12}
+    assert project.selection.frames == {12}
     assert layer(session, "near leg").key_frames == {0}
     editing.undo(session)
     assert project.document is before
@@ -164,7 +164,7 @@ def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(sessio
     close(near, first_far)
     body = layer(session, "body")
     assert body.key(12).pose.phi is body.key(0).pose.phi
-    assert project.selected_keys == {pose_channel(each): {12} for each in (0, 1, 2)}
+    assert project.selection.keys == {pose_channel(each): {12} for each in (0, 1, 2)}
     editing.undo(session)
     assert project.document is before
     # Once more is the step itself again.
@@ -450,7 +450,7 @@ def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
         assert abs(key.place) == pytest.approx(abs(wanted[0]))
         if not mirrors:
             assert [key.place, key.velocity] == pytest.approx(wanted)
-    assert session.project.selected_keys == {Channel(TRACK, far, foot): {12, 18}}
+    assert session.project.selection.keys == {Channel(TRACK, far, foot): {12, 18}}
     editing.undo(session)
     assert session.project.document is before
 
@@ -483,7 +483,7 @@ def test_pairs_of_the_document_tell_partners_of_handles_too(session):
     pasting.set_mirror_names(session, "L/R, Spielknie/Standknie")
     editing.select_handles(session, frozenset({1}))
     handle_editing.select_mirrored(session)
-    assert session.project.selected_handles == {2}
+    assert session.project.selection.handles == {2}
     editing.edit_document(session, track_commands.put_track_key(0, 1, 0, 4 + 2j))
     pairs = session.project.document.pairs
     editing.edit_layer(session, track_commands.mirror_track, 1, pairs)

@@ -102,7 +102,7 @@ def test_with_the_tool_it_does_so_from_anywhere(session, at):
     assert len(session.project.layer.handles) == 2
     move_tool.return_to_posing(session)
     tool_pointer.press_pointer(session, PointerHit(place=LEFT, handle=0))
-    assert type(session.active_tool).__name__ == "PoseTool"
+    assert type(session.tools.active).__name__ == "PoseTool"
 
 
 def test_ctrl_click_still_sets_the_anchor(session):
@@ -170,16 +170,16 @@ def test_layer_moves_its_root_parent(joined):
     project, before = joined.project, [places_of(joined, layer) for layer in (0, 1)]
     drag(joined, end=False, ctrl=True, shift=True)
     settle(joined)
-    assert project.active == 0
+    assert project.selection.active == 0
     for layer in (0, 1):
         np.testing.assert_allclose(places_of(joined, layer), before[layer] + WAY, atol=1e-3)
     tool_pointer.cancel_tool(joined)
     settle(joined)
-    assert project.active == 1
+    assert project.selection.active == 1
     np.testing.assert_allclose(places_of(joined, 1), before[1], atol=1e-3)
     move_tool.nudge_layer(joined, 4)
     settle(joined)
-    assert project.active == 0
+    assert project.selection.active == 0
     np.testing.assert_allclose(places_of(joined, 1), before[1] + 4, atol=1e-3)
 
 
@@ -201,7 +201,7 @@ def test_the_layer_that_is_pressed_moves_and_no_other(blob, tmp_path):
     before = places_of(session, 0)
     drag(session, layer=1, on_shape=True)
     settle(session)
-    assert session.project.active == 1
+    assert session.project.selection.active == 1
     np.testing.assert_allclose(places_of(session, 0), before, atol=1e-6)
     assert session.project.history.undo_label == "Move"
 

@@ -26,8 +26,8 @@ MOST_NAMED = 3  # most unreached joints that a notice names
 @with_project
 def apply_motion_preset(session: Session, project: Project) -> None:
     """Apply the drafted motion to the layer, as soon as no change is pending."""
-    draft = project.motion_setup
-    if draft is not None and not preset_setup.apply_motion_disabled_reason(project):
+    draft = session.tools.motion_setup
+    if draft is not None and not preset_setup.apply_motion_disabled_reason(session, project):
         preset_setup.close_motion_setup(session)
         pending_changes.run_when_idle(session, do(_begin, draft), _("Apply motion preset"))
 
@@ -100,7 +100,7 @@ def _step(
     """Run one step on the worker."""
 
     def failed(error: Exception) -> None:
-        project.motion_setup = project.motion_setup or task.setup
+        _reopen(session, project, task.setup)
         report_failure(session, GIVING.complaint, error)
 
     def arrived(giving: MotionSolve) -> None:
@@ -110,6 +110,12 @@ def _step(
     pending_changes.begin_pending_change(
         session, project, GIVING, work, arrived, failed, change=change
     )
+
+
+def _reopen(session: Session, project: Project, draft: MotionSetup) -> None:
+    """Show a draft again that was not applied, unless another tool is selected meanwhile."""
+    if session.project is project and session.tools.mode == "pose":
+        session.tools.select(draft)
 
 
 def _go_on(session: Session, project: Project, task: MotionJob) -> None:
@@ -127,7 +133,7 @@ def _accept(session: Session, project: Project, task: MotionJob, giving: MotionS
         session.notices.show(
             _("The motion was not applied: the drawing changed meanwhile. Apply the motion again.")
         )
-        project.motion_setup = project.motion_setup or draft
+        _reopen(session, project, draft)
         return
     gesture, command = object(), giving.command
     change = Command(command.label, lambda document: command(_without(document, draft)))
@@ -136,7 +142,7 @@ def _accept(session: Session, project: Project, task: MotionJob, giving: MotionS
     if unkeyed is not None and unkeyed.layer == before.id:
         project.history.set_preview_pose(None, gesture=gesture)
     _show_unreached_joints(session, giving)
-    if session.active_tool is None:
+    if session.tools.active is None:
         playback.scrub(session, giving.applied.first)
         playback.toggle_play(session)
 
@@ -205,5 +211,5 @@ def cancel_motion_job(session: Session, project: Project) -> None:
     if task is not None:
         session.jobs.drop(GIVING)
         project.pending = [change for change in project.pending if not change.motion_job]
-        if task.before.id == project.active:
-            project.motion_setup = project.motion_setup or task.setup
+        if task.before.id == project.selection.active:
+            _reopen(session, project, task.setup)

@@ -47,19 +47,17 @@ def find_joints(layer: Layer, kind: str) -> dict[str, complex]:
     return {name: joints[name] for name in body.parents if name in joints}
 
 
-@with_project
-def select_joint(_: Session, project: Project, name: str | None) -> None:
-    if project.motion_setup is not None:
-        project.motion_setup = replace(project.motion_setup, selected_joint=name)
+def select_joint(session: Session, name: str | None) -> None:
+    draft = session.tools.motion_setup
+    if draft is not None:
+        session.tools.select(replace(draft, selected_joint=name))
 
 
-@with_project
-def move_joint(_: Session, project: Project, name: str, place: complex) -> None:
+def move_joint(session: Session, name: str, place: complex) -> None:
     """Put a joint at a place of the drawing at rest."""
-    if project.motion_setup is not None:
-        project.motion_setup = project.motion_setup.with_joints(
-            {**project.motion_setup.joints, name: place}, name
-        )
+    draft = session.tools.motion_setup
+    if draft is not None:
+        session.tools.select(draft.with_joints({**draft.joints, name: place}, name))
 
 
 @with_project
@@ -71,9 +69,9 @@ def move_shown_joint(session: Session, project: Project, name: str, place: compl
         move_joint(session, name, complex(found.positions_on(shown.mesh.domain.mesh.vertices)[0]))
 
 
-def shown_joint_places(project: Project) -> dict[str, complex]:
+def shown_joint_places(session: Session, project: Project) -> dict[str, complex]:
     """Return the shown places of the draft's joints, by their names."""
-    draft, shown = project.motion_setup, project.layer_runtime.shown
+    draft, shown = session.tools.motion_setup, project.layer_runtime.shown
     if draft is None or shown is None or not draft.joints:
         return {}
     rest = np.array(list(draft.joints.values()), dtype=np.complex128)
@@ -81,17 +79,16 @@ def shown_joint_places(project: Project) -> dict[str, complex]:
     return dict(zip(draft.joints, places.tolist(), strict=True))
 
 
-@with_project
-def exclude_joint(_: Session, project: Project, name: str) -> None:
+def exclude_joint(session: Session, name: str) -> None:
     """Leave a joint out of the motion."""
-    if project.motion_setup is not None and name in project.motion_setup.joints:
-        project.motion_setup = project.motion_setup.without(name)
+    draft = session.tools.motion_setup
+    if draft is not None and name in draft.joints:
+        session.tools.select(draft.without(name))
 
 
-@with_project
-def include_joint(session: Session, project: Project, name: str) -> None:
+def include_joint(session: Session, name: str) -> None:
     """Put a joint where it was found, or else beside its parent joint."""
-    draft = project.motion_setup
+    draft = session.tools.motion_setup
     if draft is not None and name not in draft.joints:
         place = draft.suggested.get(name)
         move_joint(session, name, _beside(draft, name) if place is None else place)
@@ -103,14 +100,16 @@ def include_joint(session: Session, project: Project, name: str) -> None:
     icon="WAND_MAGIC_SPARKLES",
     hint=_("Move all joints back to where they were detected"),
     why_disabled=unless(
-        lambda _, project: project.motion_setup is not None and project.motion_setup.suggested,
+        lambda session, _: (
+            session.tools.motion_setup is not None and session.tools.motion_setup.suggested
+        ),
         _("Choose a motion preset for a body with joints first."),
     ),
 )
-@with_project
-def reset_joints(_: Session, project: Project) -> None:
-    if project.motion_setup is not None:
-        project.motion_setup = project.motion_setup.with_joints(project.motion_setup.suggested)
+def reset_joints(session: Session) -> None:
+    draft = session.tools.motion_setup
+    if draft is not None:
+        session.tools.select(draft.with_joints(draft.suggested))
 
 
 @named_action(
@@ -119,19 +118,19 @@ def reset_joints(_: Session, project: Project) -> None:
     icon="LEFT_RIGHT",
     hint=_("Mirror the joints of one side to the other side"),
     why_disabled=unless(
-        lambda _, project: (
-            project.motion_setup is not None and project.motion_setup.kind == "biped-front"
+        lambda session, _: (
+            session.tools.motion_setup is not None
+            and session.tools.motion_setup.kind == "biped-front"
         ),
         _("Choose a motion preset for a body seen from the front first."),
     ),
 )
-@with_project
-def mirror_joints(session: Session, project: Project) -> None:
+def mirror_joints(session: Session) -> None:
     """Mirror the joints of one side to the other side.
 
     The side is that of the last selected joint, or the left one.
     """
-    draft = project.motion_setup
+    draft = session.tools.motion_setup
     if draft is None:
         return
     side = mirrored_side(draft)
@@ -143,7 +142,7 @@ def mirror_joints(session: Session, project: Project) -> None:
             (nearest,) = _inside(draft, mirrored)
             joints[other_side(name)] = nearest
             outside += [other_side(name)] if nearest != mirrored else []
-    project.motion_setup = draft.with_joints(joints, draft.selected_joint)
+    session.tools.select(draft.with_joints(joints, draft.selected_joint))
     if outside:
         text = _(
             "The mirrored places of {joints} are outside the drawing. Drag these joints to "

@@ -38,7 +38,7 @@ def motion_disabled_reason(_session: Session, project: Project) -> str | None:
     icon="PERSON_WALKING",
     hint=_("Make the layer walk, wave or breathe: place its joints and choose a motion"),
     why_disabled=motion_disabled_reason,
-    active=lambda session: session.project is not None and session.project.motion_setup,
+    active=lambda session: session.tools.motion_setup,
 )
 @with_project
 def begin_motion_setup(session: Session, project: Project) -> None:
@@ -46,25 +46,24 @@ def begin_motion_setup(session: Session, project: Project) -> None:
 
     An existing draft is shown again.
     """
-    session.panel_to_focus = PANEL
+    session.display.focus_panel(PANEL)
     if (
-        project.motion_setup is not None
+        session.tools.motion_setup is not None
         or project.motion_job is not None
-        or session.active_tool is not None
+        or session.tools.active is not None
     ):
         return
     playback.stop_playback(session)
-    session.cutting = session.material = None
-    session.moves = session.records = False
-    project.selected_handles = frozenset()
+    project.selection.deselect_handles(project.selection.handles)
     frame = playback.current_frame(session, project)
     here = [each for each in project.layer.motions if each.first <= frame < each.last]
     if here:
-        project.motion_setup = setup_of_applied_motion(project.layer, here[-1])
+        draft = setup_of_applied_motion(project.layer, here[-1])
     else:
-        project.motion_setup = _put_away(project, frame) or _new(project.layer, frame)
+        draft = _put_away(session, project, frame) or _new(project.layer, frame)
+    session.tools.select(draft)
     # Motion setup has its own hints.
-    session.tutorial = None
+    session.tutorial.end()
 
 
 @with_project
@@ -78,18 +77,18 @@ def edit_applied_motion(session: Session, project: Project, given: AppliedMotion
 @with_project
 def append_motion(session: Session, project: Project, given: AppliedMotion) -> None:
     """Draft another motion to follow an applied motion; joints stay."""
-    draft = project.motion_setup
+    draft = session.tools.motion_setup
     if draft is None:
         playback.scrub(session, given.last)
         begin_motion_setup(session)
     elif given in project.layer.motions:
         playback.scrub(session, given.last)
-        project.motion_setup = replace(draft, applied_motion=None, first=given.last)
+        session.tools.select(replace(draft, applied_motion=None, first=given.last))
 
 
-def _put_away(project: Project, frame: int) -> MotionSetup | None:
+def _put_away(session: Session, project: Project, frame: int) -> MotionSetup | None:
     """Return the last closed draft if it has the same shape and no applied motion."""
-    draft, layer = project.last_motion_setup, project.layer
+    draft, layer = session.tools.last_motion_setup, project.layer
     if draft is None or layer.motions or draft.applied_motion is not None:
         return None
     is_same = (draft.layer, draft.domain) == (layer.id, layer.domain)
@@ -159,56 +158,55 @@ def _first_motion(kind: str, joints: Collection[str]) -> str:
 
 
 @with_project
-def set_body_kind(_: Session, project: Project, kind: str) -> None:
+def set_body_kind(session: Session, project: Project, kind: str) -> None:
     """Set the body kind; its joints are its earlier or suggested ones."""
-    draft = project.motion_setup
+    draft = session.tools.motion_setup
     if draft is None or kind == draft.kind:
         return
     others = {**draft.others, draft.kind: draft.joints}
     suggested = find_joints(project.layer, kind)
     joints = others.get(kind, suggested)
     fits = kind in MOTIONS[draft.motion].templates
-    project.motion_setup = replace(
-        draft,
-        kind=kind,
-        joints=joints,
-        suggested=suggested,
-        others=others,
-        motion=draft.motion if fits else _first_motion(kind, joints),
-        facing=None,
-        selected_joint=None,
-        past=(),
+    session.tools.select(
+        replace(
+            draft,
+            kind=kind,
+            joints=joints,
+            suggested=suggested,
+            others=others,
+            motion=draft.motion if fits else _first_motion(kind, joints),
+            facing=None,
+            selected_joint=None,
+            past=(),
+        )
     )
 
 
-@with_project
-def set_motion_preset(_: Session, project: Project, motion: str) -> None:
+def set_motion_preset(session: Session, motion: str) -> None:
     """Set the motion; only motions with steps travel."""
-    draft = project.motion_setup
+    draft = session.tools.motion_setup
     if draft is not None and draft.kind in MOTIONS[motion].templates:
         travels = draft.parameters.travel and MOTIONS[motion].template_for(draft.kind).can_travel
         parameters = replace(draft.parameters, travel=travels)
-        project.motion_setup = replace(draft, motion=motion, parameters=parameters)
+        session.tools.select(replace(draft, motion=motion, parameters=parameters))
 
 
-@with_project
-def set_motion_parameters(_: Session, project: Project, /, **values: Any) -> None:
+def set_motion_parameters(session: Session, /, **values: Any) -> None:
     """Set speed, size, energy, mirrored, start or travel."""
-    if project.motion_setup is not None:
-        parameters = replace(project.motion_setup.parameters, **values)
-        project.motion_setup = replace(project.motion_setup, parameters=parameters)
+    draft = session.tools.motion_setup
+    if draft is not None:
+        session.tools.select(replace(draft, parameters=replace(draft.parameters, **values)))
 
 
-@with_project
-def set_motion_options(_: Session, project: Project, /, **values: Any) -> None:
+def set_motion_options(session: Session, /, **values: Any) -> None:
     """Set rounds, facing, bones, or whether edits are replaced."""
-    if project.motion_setup is not None:
-        project.motion_setup = replace(project.motion_setup, **values)
+    if session.tools.motion_setup is not None:
+        session.tools.select(replace(session.tools.motion_setup, **values))
 
 
-def is_applied_motion_edited(project: Project) -> bool:
+def is_applied_motion_edited(session: Session, project: Project) -> bool:
     """Return whether the applied motion that a draft replaces was edited by hand."""
-    draft = project.motion_setup
+    draft = session.tools.motion_setup
     return (
         draft is not None
         and draft.applied_motion is not None
@@ -216,9 +214,9 @@ def is_applied_motion_edited(project: Project) -> bool:
     )
 
 
-def apply_motion_disabled_reason(project: Project) -> str | None:
+def apply_motion_disabled_reason(session: Session, project: Project) -> str | None:
     """Return why the draft cannot be applied; None if it can."""
-    draft = project.motion_setup
+    draft = session.tools.motion_setup
     if draft is None:
         return _("There is no motion to apply.")
     if draft.missing_joints:
@@ -229,25 +227,24 @@ def apply_motion_disabled_reason(project: Project) -> str | None:
         )
         missing = ", ".join(map(_, draft.missing_joints))
         return text.format(motion=draft.preset.label, joints=missing)
-    if is_applied_motion_edited(project) and not draft.replaces_edits:
+    if is_applied_motion_edited(session, project) and not draft.replaces_edits:
         return _("You edited the motion by hand. Applying it again would delete your edits.")
     return None
 
 
-@with_project
-def close_motion_setup(_: Session, project: Project) -> None:
+def close_motion_setup(session: Session) -> None:
     """Close the draft without changes to the layer; its joints are remembered."""
-    project.last_motion_setup, project.motion_setup = project.motion_setup, None
+    session.tools.select("pose")
 
 
 @with_project
-def update_motion_setup(_: Session, project: Project) -> None:
+def update_motion_setup(session: Session, project: Project) -> None:
     """Drop a draft if another layer is active or its shape has changed; once a frame."""
-    draft = project.motion_setup
+    draft = session.tools.motion_setup
     if draft is None:
         return
     layer = project.layer
-    if draft.layer != project.active or draft.domain is not layer.domain or layer.still:
-        project.motion_setup = None
+    if draft.layer != project.selection.active or draft.domain is not layer.domain or layer.still:
+        session.tools.drop_motion_setup()
     elif draft.applied_motion is not None and draft.applied_motion not in layer.motions:
-        project.motion_setup = replace(draft, applied_motion=None)
+        session.tools.select(replace(draft, applied_motion=None))
