@@ -91,9 +91,11 @@ class FileBrowser:
         now = _name_field(now, size.x, is_new=appears, is_set=now.name != dialog.name)
         is_accepted |= any(imgui.is_key_pressed(key, repeat=False) for key in ENTER)
         folder, path = chosen_folder(now), chosen_path(now)
-        possible = path is not None or (folder is not None and not now.writes)
         text = now.verb if now.writes else _("Open")
-        if main_button(look, text, BUTTON * look.em, enabled=possible):
+        possible = path is not None or (folder is not None and not now.writes)
+        missing = _("Type a name first.") if now.writes else _("Choose a file first.")
+        reason = None if possible else missing
+        if main_button(look, text, BUTTON * look.em, reason=reason):
             is_accepted = True
             # A save uses the typed name, even if a folder is marked.
             folder = None if now.writes else folder

@@ -276,7 +276,7 @@ def _solving(project: Project) -> list[Action]:
             if progress_bar(resolver.progress, resolver.status_text)
             else []
         )
-    is_possible = resolver is None and bool(project.layer.handles)
+    reason = resolving.solving_disabled_reason(project)
     hint = _("Pull the handles of every key to their targets again, within the limits")
-    is_pressed = text_button(_("Re-pose all keys"), FILL, hint, enabled=is_possible)
+    is_pressed = text_button(_("Re-pose all keys"), FILL, hint, reason=reason)
     return [do(resolving.solve_keys_again)] if is_pressed else []

@@ -59,11 +59,12 @@ def draw_distortion_curves(session: Session, look: Look, project: Project) -> li
     else:
         small_text(look, _("Red: the limits of poses."))
     halves, is_new = split_line(2), curves.clip == project.clip
+    reason = None if is_new else _("Wait until the curves are measured again.")
     png = f"{icons.ICON_FA_IMAGE}  {_('Save as PNG…')}"
     csv = f"{icons.ICON_FA_TABLE}  {_('Save as CSV…')}"
-    if text_button(f"{png}###png", next(halves), enabled=is_new):
+    if text_button(f"{png}###png", next(halves), reason=reason):
         actions.append(do(saving_curves.ask_curves_png))
-    if text_button(f"{csv}###csv", next(halves), enabled=is_new):
+    if text_button(f"{csv}###csv", next(halves), reason=reason):
         actions.append(do(saving_curves.ask_curves_csv))
     return actions
 

@@ -186,7 +186,7 @@ def _size(
         icons.ICON_FA_ARROW_ROTATE_LEFT,
         "own size",
         _("Reset to the size of the drawing"),
-        enabled=settings.size is not None,
+        reason=_("It is the size of the drawing already.") if settings.size is None else None,
     ):
         return replace(settings, size=None), actions
     if entered is None or entered.size == view.size:
@@ -208,7 +208,8 @@ def _canvas(look: Look, project: Project) -> list[Action]:
     imgui.same_line(0, gap)
     hint = _("Reset to the size of the backmost picture")
     is_own = document.canvas != document.layers[0].picture.size
-    if icon_button(look, icons.ICON_FA_ARROW_ROTATE_LEFT, "canvas size", hint, enabled=is_own):
+    reason = None if is_own else _("It is the size of that picture already.")
+    if icon_button(look, icons.ICON_FA_ARROW_ROTATE_LEFT, "canvas size", hint, reason=reason):
         return [
             do(editing.edit_document, scene_commands.set_canvas(document.layers[0].picture.size))
         ]

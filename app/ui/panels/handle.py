@@ -95,7 +95,7 @@ def _heading_with_delete(session: Session, look: Look, project: Project) -> list
         "delete handles",
         _("Delete the selected handles; the pose stays"),
         keys=_("Del"),
-        enabled=bool(project.selection.handles),
+        reason=None if project.selection.handles else _("Select a handle first."),
     ):
         actions.append(do(remove_handles, project.selection.handles))
     return actions

@@ -209,7 +209,8 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
         actions.append(do(flipping.set_mirror_axis, placed))
     imgui.same_line(0, gap)
     hint = _("Put the axis in the middle of the pairs of handles, or of the shape")
-    if text_button(_("Middle"), button, hint, enabled=layer.mirror is not None):
+    reason = _("The axis is in the middle already.") if layer.mirror is None else None
+    if text_button(_("Middle"), button, hint, reason=reason):
         actions.append(do(flipping.set_mirror_axis, None))
     label(look, _("Pairs"))
     text = imgui.input_text("##pairs", format_pairs(project.document.pairs))[1]

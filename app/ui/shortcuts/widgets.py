@@ -14,8 +14,7 @@ def draw_action_item(session: Session, spec: ActionSpec) -> list[Action]:
     clicked, _ = imgui.menu_item(
         spec.menu_title(session), shown_keys(spec), spec.is_active(session), reason is None
     )
-    if reason is not None:
-        draw_tooltip(reason)
+    draw_tooltip(reason or "")
     return [spec.action] if clicked else []
 
 
@@ -27,9 +26,9 @@ def draw_action_text_button(session: Session, spec: ActionSpec, width: float) ->
         is_pressed = text_button(
             f"{icon_glyph(spec.icon)}  {spec.label}###{spec.name}",
             width,
-            reason or spec.hint or spec.label,
+            spec.hint or spec.label,
             shown_keys(spec),
-            enabled=reason is None,
+            reason=reason,
         )
     return [spec.action] if is_pressed else []
 
@@ -38,8 +37,7 @@ def draw_action_main_button(session: Session, look: Look, spec: ActionSpec) -> l
     """Draw the main button of a panel for a named action, with its icon and its label."""
     reason = spec.disabled_reason(session)
     text = f"{icon_glyph(spec.icon)}  {spec.label}###{spec.label}"
-    is_pressed = main_button(look, text, FILL, enabled=reason is None)
-    draw_tooltip(reason or spec.hint, shown_keys(spec))
+    is_pressed = main_button(look, text, FILL, spec.hint, shown_keys(spec), reason=reason)
     return [spec.action] if is_pressed else []
 
 
@@ -55,10 +53,10 @@ def draw_action_button(
         look,
         icon_glyph(icon or spec.icon),
         spec.label,
-        reason or spec.hint or spec.label,
+        spec.hint or spec.label,
         keys=shown_keys(spec),
         active=spec.is_active(session),
-        enabled=reason is None,
+        reason=reason,
     )
     look.note_place(spec.name)
     return [spec.action] if is_pressed else []

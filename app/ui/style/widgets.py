@@ -77,8 +77,8 @@ def begin_tooltip() -> bool:
 
 
 def draw_tooltip(text: str, keys: str = "") -> None:
-    """Show a tooltip with its shortcut if the pointer rests on the last item."""
-    if begin_tooltip():
+    """Show a text and its shortcut if the pointer rests on the last item. "" shows nothing."""
+    if text and begin_tooltip():
         room = TIP_ROOM[0] * imgui.get_font_size()
         imgui.push_text_wrap_pos(room)
         imgui.text_unformatted(text)
@@ -98,7 +98,7 @@ def icon_button(
     *,
     keys: str = "",
     active: bool = False,
-    enabled: bool = True,
+    reason: str | None = None,
 ) -> bool:
     """Draw a square button with an icon. Return whether it was pressed.
 
@@ -110,42 +110,59 @@ def icon_button(
         Shortcut in the tooltip.
     active : bool
         Whether the option that the button switches is on.
+    reason : str, optional
+        The reason why the button is disabled, in place of the hint.
     """
     palette = look.palette
-    imgui.begin_disabled(not enabled)
+    imgui.begin_disabled(reason is not None)
     imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
     imgui.push_style_color(imgui.Col_.text, palette.accent if active else palette.text)
     size = imgui.get_frame_height()
     pressed = imgui.button(f"{icon}###{name}", ImVec2(size * 1.15, size))
     imgui.pop_style_color(2)
     imgui.end_disabled()
-    draw_tooltip(hint, keys)
+    draw_tooltip(reason or hint, keys)
     return pressed
 
 
-def main_button(look: Look, text: str, width: float = 0.0, *, enabled: bool = True) -> bool:
+def main_button(
+    look: Look,
+    text: str,
+    width: float = 0.0,
+    hint: str = "",
+    keys: str = "",
+    *,
+    reason: str | None = None,
+) -> bool:
     """Draw the main button of a panel, in the accent colour."""
     palette = look.palette
-    imgui.begin_disabled(not enabled)
     for slot in (imgui.Col_.button, imgui.Col_.button_hovered, imgui.Col_.button_active):
         imgui.push_style_color(slot, palette.accent)
     imgui.push_style_color(imgui.Col_.text, palette.on_accent)
+    imgui.begin_disabled(reason is not None)
     pressed = imgui.button(text, ImVec2(width, 0))
-    imgui.pop_style_color(4)
     imgui.end_disabled()
+    imgui.pop_style_color(4)
+    draw_tooltip(reason or hint, keys)
     return pressed
 
 
 def text_button(
-    text: str, width: float = 0.0, hint: str = "", keys: str = "", *, enabled: bool = True
+    text: str, width: float = 0.0, hint: str = "", keys: str = "", *, reason: str | None = None
 ) -> bool:
-    """Draw a button with text and tooltip. Return whether it was pressed."""
-    imgui.begin_disabled(not enabled)
+    """Draw a button with its tooltip: a hint, or the reason why the button is disabled."""
+    imgui.begin_disabled(reason is not None)
     pressed = imgui.button(text, ImVec2(width, 0))
     imgui.end_disabled()
-    if hint:
-        draw_tooltip(hint, keys)
+    draw_tooltip(reason or hint, keys)
     return pressed
+
+
+def menu_entry(text: str, icon: str = "", keys: str = "", *, reason: str | None = None) -> bool:
+    """Draw an entry of a menu, with the reason why it is disabled in its tooltip."""
+    chosen = imgui.internal.menu_item_ex(text, icon, keys, enabled=reason is None)
+    draw_tooltip(reason or "")
+    return chosen
 
 
 def split_line(count: int, gap: float | None = None, *, room: float = 0.0) -> Iterator[float]:

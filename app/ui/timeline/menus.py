@@ -27,7 +27,7 @@ from app.texts import _, ngettext
 from app.ui.shortcuts.keys import shown_keys
 from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.style.theme import Look
-from app.ui.style.widgets import draw_tooltip, shorten_text
+from app.ui.style.widgets import draw_tooltip, menu_entry, shorten_text
 from app.ui.timeline.easing_curve import LABELS
 from app.ui.timeline.layout import TimelineLayout
 from app.ui.timeline.value_fields import draw_value_fields
@@ -177,7 +177,9 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
         reverse = _("Reverse all keys of {layer}")
     name = shorten_text(project.layer.name, NAME * look.em)
     reverse, scale = (text.format(count=chosen, layer=name) for text in (reverse, scale))
-    if imgui.menu_item_simple(f"{reverse}###Reverse", enabled=max(count, chosen) > 1):
+    second = _("Set a second key first.")
+    reason = None if max(count, chosen) > 1 else second
+    if menu_entry(f"{reverse}###Reverse", reason=reason):
         actions.append(do(keys.reverse_selected_keys))
     if imgui.begin_menu(f"{scale}###Scale time"):
         actions += [
@@ -198,9 +200,8 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
             actions.append(do(keys.scale_selected_keys, percent / 100))
             imgui.close_current_popup()
         imgui.end_menu()
-    if imgui.menu_item_simple(
-        _("Copy first pose to last key"), enabled=len(project.layer.keys) > 1
-    ):
+    reason = None if len(project.layer.keys) > 1 else second
+    if menu_entry(_("Copy first pose to last key"), reason=reason):
         actions.append(do(editing.edit_layer, key_commands.match_loop_ends))
     imgui.separator()
     for spec in (

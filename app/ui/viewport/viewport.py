@@ -29,7 +29,7 @@ from app.ui.panel import is_in_front
 from app.ui.shortcuts.keys import ALT, CTRL, format_modified
 from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.style.theme import Look, pixel_density
-from app.ui.style.widgets import is_hovered_or_held, is_pressed
+from app.ui.style.widgets import is_hovered_or_held, is_pressed, menu_entry
 from app.ui.viewport.backdrop import draw_camera_frame
 from app.ui.viewport.interaction.drag import follow_pointer
 from app.ui.viewport.interaction.gizmos import (
@@ -247,8 +247,7 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
         return actions
     chosen = screen.project.selection.handles | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
-    item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
-    if item(_("Delete"), icons.ICON_FA_TRASH, format_modified(ALT, _("click"))):
+    if menu_entry(_("Delete"), icons.ICON_FA_TRASH, format_modified(ALT, _("click"))):
         actions.append(do(remove_handles, chosen))
     for spec in (
         pin_selected_handles,
@@ -260,10 +259,11 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     imgui.separator()
     is_anchor = handle.position == layer.anchor
     label = _("Automatic anchor") if is_anchor else _("Make anchor")
-    if item(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, _("click"))):
+    if menu_entry(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, _("click"))):
         actions.append(do(toggle_anchor_at_handle, identity))
     is_turned = target is not None and target.rotation is not None
-    if item(_("Turn freely"), icons.ICON_FA_ROTATE, enabled=is_turned):
+    reason = None if is_turned else _("The handle turns freely already.")
+    if menu_entry(_("Turn freely"), icons.ICON_FA_ROTATE, reason=reason):
         actions.append(do(free_rotation, identity))
     imgui.end_popup()
     return actions

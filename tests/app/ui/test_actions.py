@@ -14,6 +14,7 @@ from app.editor.tools import move_tool, tool_pointer
 from app.editor.tools.tool import PointerHit
 from app.ui.shortcuts import widgets
 from app.ui.shortcuts.table import ACTIONS, MENUS
+from app.ui.style import widgets as style_widgets
 
 SENTENCE = re.compile(r"[A-Z“][^.]*\.( [A-Z“][^.]*\.)*")
 WITHOUT_PROJECT = {
@@ -138,3 +139,17 @@ def test_an_arrow_nudges_and_does_not_go_to_a_key(window):
     window.run(lambda robot: robot.key_press(imgui.Key.up_arrow))
     window.frames(2)
     assert session.project.timeline.playhead.frame == 24
+
+
+def test_greyed_buttons_of_panels_show_their_reasons(window, loose, monkeypatch):
+    shown = []
+    monkeypatch.setattr(style_widgets, "draw_tooltip", lambda text, *_: shown.append(text))
+    for tab in ("Layers", "Material", "Mesh"):
+        window.show_tab(tab)
+        window.frames(3)
+    assert loose is window.session.project
+    assert set(shown) >= {
+        *("A scene needs at least one layer.", "The layer is in front of all others already."),
+        *("There are no strokes.", "Brush over a part or draw a bone first."),
+        "Change a setting above first.",
+    }

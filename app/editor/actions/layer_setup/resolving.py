@@ -87,6 +87,13 @@ def set_limit(session: Session, bounds: Bounds, name: str, value: float) -> None
     set_limits(session, replace(bounds, **{name: value}))
 
 
+def solving_disabled_reason(project: Project) -> str | None:
+    """Return why the poses of keys cannot be solved again; None if they can."""
+    if project.key_resolver is not None:
+        return _("Wait until all keys are re-posed.")
+    return None if project.layer.handles else _("Add a handle first.")
+
+
 def solve_keys_again(session: Session) -> None:
     """Solve every key for its targets again, within the present limits."""
     pending_changes.run_when_idle(session, do(_solve_keys_again), _("Re-pose keys"))

@@ -99,15 +99,11 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
         if entered is not None:
             changed_field: dict[str, Any] = {field: _allowed(field, entered.value)}
             actions.append(_set(replace(spring, **changed_field)))
-    can = spring.enabled and track is None
-    hint = (
-        _("Turn the swing into a track with keys that you can edit")
-        if can
-        else _("Switch the spring on first")
-        if not spring.enabled
-        else _("The track overrides the spring. Delete the track first.")
-    )
-    if text_button(_("Bake to keys"), FILL, hint, enabled=can):
+    reason = None if spring.enabled else _("Switch the spring on first.")
+    if spring.enabled and track is not None:
+        reason = _("The track overrides the spring. Delete the track first.")
+    hint = _("Turn the swing into a track with keys that you can edit")
+    if text_button(_("Bake to keys"), FILL, hint, reason=reason):
         actions.append(do(springs.bake_spring, handle.id))
     return actions
 

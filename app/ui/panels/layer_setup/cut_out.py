@@ -58,7 +58,7 @@ def draw_cut_out_panel(session: Session, look: Look, project: Project) -> list[A
         icons.ICON_FA_TRASH,
         "forget strokes",
         _("Delete all strokes, all knife lines and the mask"),
-        enabled=cut_out.is_by_hand,
+        reason=None if cut_out.is_by_hand else _("There is nothing to delete."),
     ):
         actions.append(do(cut_out_editing.clear_cut_out_strokes))
     actions += _brush(session, look, project)

@@ -53,7 +53,8 @@ def draw_domain_panel(session: Session, look: Look, project: Project) -> list[Ac
     else:
         is_new = chosen != layer.meshing and resolver is None
         text = f"{icons.ICON_FA_ARROWS_ROTATE}  {_('Rebuild')}###rebuild"
-        if main_button(look, text, FILL, enabled=is_new):
+        reason = None if is_new else _("Change a setting above first.")
+        if main_button(look, text, FILL, reason=reason):
             actions.append(do(resolving.rebuild_mesh))
         if is_new and imgui.button(_("Revert") + "###forget", ImVec2(FILL, 0)):
             actions.append(do(viewing.preview_meshing, layer.meshing))

@@ -51,7 +51,8 @@ def draw_material_panel(session: Session, look: Look, project: Project) -> list[
     align_right(1.15 * imgui.get_frame_height())
     hint, is_painted = _("Delete all strokes; bones stay"), layer.stiffness is not None
     actions = [] if session.display.tint == "stiffness" else [do(viewing.set_tint, "stiffness")]
-    if icon_button(look, icons.ICON_FA_TRASH, "clear material", hint, enabled=is_painted):
+    reason = None if is_painted else _("There are no strokes.")
+    if icon_button(look, icons.ICON_FA_TRASH, "clear material", hint, reason=reason):
         actions.append(do(editing.edit_layer, stiffness_commands.clear_stiffness))
     actions += _tools(session, look) + _brush(session, look, project)
     heading(look, _("Bones"), framed=True)
@@ -157,12 +158,14 @@ def _whole(layer: Layer) -> list[Action]:
     widths = split_line(2)
     hint = _("Make heads, hands and feet stiff, tails and hair soft, by the names of the handles")
     text = f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  {_('By names')}"
-    if text_button(text, next(widths), hint, enabled=bool(layer.handles)):
+    reason = None if layer.handles else _("Add a handle first.")
+    if text_button(text, next(widths), hint, reason=reason):
         actions.append(do(stiffness_editing.suggest_stiffness))
     hint = _("Copy the material of one side of the mirror axis to the other side")
     is_any = layer.stiffness is not None or bool(layer.bones)
     text = f"{icons.ICON_FA_ARROWS_LEFT_RIGHT}  {_('Mirror')}"
-    if text_button(text, next(widths), hint, enabled=is_any):
+    reason = None if is_any else _("Brush over a part or draw a bone first.")
+    if text_button(text, next(widths), hint, reason=reason):
         actions.append(do(stiffness_editing.mirror_stiffness))
     return actions
 
@@ -177,13 +180,14 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
             else []
         )
     actions: list[Action] = []
-    is_possible = resolver is None and bool(project.layer.handles)
-    is_here = is_possible and pose_at_playhead(session, project) is not None
-    widths = split_line(2)
+    reason = resolving.solving_disabled_reason(project)
+    here, widths = reason, split_line(2)
+    if reason is None and pose_at_playhead(session, project) is None:
+        here = _("Move the playhead to a key first.")
     hint = _("Pull the handles of the pose that is shown to their targets again")
-    if text_button(_("Re-pose this key"), next(widths), hint, enabled=is_here):
+    if text_button(_("Re-pose this key"), next(widths), hint, reason=here):
         actions.append(do(stiffness_editing.solve_shown_pose_again))
     hint = _("Pull the handles of every key to their targets again")
-    if text_button(_("Re-pose all keys"), next(widths), hint, enabled=is_possible):
+    if text_button(_("Re-pose all keys"), next(widths), hint, reason=reason):
         actions.append(do(resolving.solve_keys_again))
     return actions

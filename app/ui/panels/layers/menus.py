@@ -34,17 +34,16 @@ from app.editor.layering.switches import (
 )
 from app.texts import _, ngettext
 from app.ui.shortcuts.keys import shown_keys
-from app.ui.style.widgets import draw_tooltip
+from app.ui.style.widgets import menu_entry
 
 SOLO = icons.ICON_FA_BINOCULARS
-item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
 
 
 def draw_layer_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]:
     """Draw the menu of the last item, a row. Return also whether rename was chosen."""
     if not imgui.begin_popup_context_item(f"menu of layer {row.key}"):
         return [], False
-    asks = item(_("Rename…"), icons.ICON_FA_PEN, shown_keys(layer_list.rename_active_layer))
+    asks = menu_entry(_("Rename…"), icons.ICON_FA_PEN, shown_keys(layer_list.rename_active_layer))
     if row.layer is not None:
         actions = _of_layer(project, row.layer)
     elif row.switch_group is not None:
@@ -73,9 +72,9 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     whom = chosen if is_many else (identity,)
     count = len(whom)
     if not is_many:
-        if item(_("Duplicate"), icons.ICON_FA_CLONE):
+        if menu_entry(_("Duplicate"), icons.ICON_FA_CLONE):
             actions.append(do(duplicate_layer, identity))
-        if item(_("Replace picture…"), icons.ICON_FA_FILE_IMAGE):
+        if menu_entry(_("Replace picture…"), icons.ICON_FA_FILE_IMAGE):
             actions.append(do(ask_replacement_picture, identity))
     imgui.separator()
     text = (
@@ -83,53 +82,64 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
         if layer.hidden
         else ngettext("Hide", "Hide {count} layers", count)
     )
-    if item(text.format(count=count), icons.ICON_FA_EYE):
+    if menu_entry(text.format(count=count), icons.ICON_FA_EYE):
         actions.append(do(toggle_layers_hidden, *whom))
     text = (
         ngettext("Unlock", "Unlock {count} layers", count)
         if layer.locked
         else ngettext("Lock", "Lock {count} layers", count)
     )
-    if item(text.format(count=count), icons.ICON_FA_LOCK):
+    if menu_entry(text.format(count=count), icons.ICON_FA_LOCK):
         actions.append(do(toggle_layers_locked, *whom))
     alone = project.layer_list.solo == set(whom)
     text = _("End solo") if alone else ngettext("Solo", "Solo {count} layers", count)
-    if item(text.format(count=count), SOLO):
+    if menu_entry(text.format(count=count), SOLO):
         actions.append(do(solo_layers, *whom))
     if not is_many:
         actions += _kind(layer)
     imgui.separator()
-    if item(
-        _("Group layers"),
-        icons.ICON_FA_FOLDER_PLUS,
-        enabled=is_many or not project.selection.other_layers,
-    ):
+    others = _("Other layers are selected. Open the menu of one of them.")
+    reason = None if is_many or not project.selection.other_layers else others
+    if menu_entry(_("Group layers"), icons.ICON_FA_FOLDER_PLUS, reason=reason):
         actions.append(do(select_layers, *whom))
         actions.append(do(group_layers))
-    if layer.group and item(_("Ungroup layer"), icons.ICON_FA_FOLDER_MINUS):
+    if layer.group and menu_entry(_("Ungroup layer"), icons.ICON_FA_FOLDER_MINUS):
         actions.append(do(put_layers_in_group, layer.group.rpartition("/")[0], *whom))
-    free = is_many and all(project.document.switch_group_of(each) is None for each in chosen)
-    if item(_("Create switch"), icons.ICON_FA_MASKS_THEATER, enabled=free):
+    reason = _switch_disabled_reason(project, chosen if is_many else ())
+    if menu_entry(_("Create switch"), icons.ICON_FA_MASKS_THEATER, reason=reason):
         actions.append(do(create_switch, *chosen))
-    if project.document.switch_group_of(identity) and item(
+    if project.document.switch_group_of(identity) and menu_entry(
         _("Remove from switch"), icons.ICON_FA_XMARK
     ):
         actions.append(
             do(editing.edit_document, switch_group_commands.remove_from_switch_group(identity))
         )
     imgui.separator()
-    left = len(project.document.layers) > len(whom)
+    is_all = len(project.document.layers) == len(whom)
+    reason = _("A scene needs at least one layer.") if is_all else None
     text = ngettext("Delete", "Delete {count} layers", count).format(count=count)
-    if item(text, icons.ICON_FA_TRASH, enabled=left):
+    if menu_entry(text, icons.ICON_FA_TRASH, reason=reason):
         actions.append(do(delete_layers, *whom))
     return actions
 
 
+def _switch_disabled_reason(project: Project, layers: Sequence[int]) -> str | None:
+    """Return why layers cannot become a switch; None if they can."""
+    if len(layers) < 2:
+        return _("Select several layers first.")
+    is_taken = any(project.document.switch_group_of(each) is not None for each in layers)
+    return _("One of the layers is in a switch already.") if is_taken else None
+
+
 def _kind(layer: Layer) -> list[Action]:
     actions: list[Action] = []
-    if item(_("Include in exports") if layer.reference else _("Reference only"), icons.ICON_FA_BAN):
+    if menu_entry(
+        _("Include in exports") if layer.reference else _("Reference only"), icons.ICON_FA_BAN
+    ):
         actions.append(do(toggle_reference, layer.id))
-    if item(_("Make posable") if layer.still else _("Make still picture"), icons.ICON_FA_IMAGE):
+    if menu_entry(
+        _("Make posable") if layer.still else _("Make still picture"), icons.ICON_FA_IMAGE
+    ):
         turn = make_posable if layer.still else make_still
         actions.append(do(turn, layer.id))
     return actions
@@ -140,13 +150,13 @@ def _draw_switch_items(project: Project, switch_group: SwitchGroup) -> list[Acti
     actions = [
         do(key_switch, identity)
         for identity in switch_group.layers
-        if item(
+        if menu_entry(
             _("Show {name}").format(name=project.document.layer(identity).name),
             icons.ICON_FA_CIRCLE_DOT,
         )
     ]
     imgui.separator()
-    if item(_("Delete switch"), icons.ICON_FA_XMARK):
+    if menu_entry(_("Delete switch"), icons.ICON_FA_XMARK):
         actions.append(
             do(editing.edit_document, switch_group_commands.delete_switch_group(switch_group.name))
         )
@@ -156,25 +166,23 @@ def _draw_switch_items(project: Project, switch_group: SwitchGroup) -> list[Acti
 def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     actions: list[Action] = []
     imgui.separator()
-    if item(_("Select its layers"), icons.ICON_FA_LIST_CHECK):
+    if menu_entry(_("Select its layers"), icons.ICON_FA_LIST_CHECK):
         actions.append(do(select_layers, *row.layers))
-    if item(_("Show") if group.hidden else _("Hide"), icons.ICON_FA_EYE):
+    if menu_entry(_("Show") if group.hidden else _("Hide"), icons.ICON_FA_EYE):
         actions.append(do(toggle_group_hidden, group.name))
     locked = all(project.document.layer(each).locked for each in row.layers)
-    if item(_("Unlock") if locked else _("Lock"), icons.ICON_FA_LOCK):
+    if menu_entry(_("Unlock") if locked else _("Lock"), icons.ICON_FA_LOCK):
         actions.append(do(toggle_layers_locked, *row.layers))
     alone = project.layer_list.solo == set(row.layers)
-    if item(_("End solo") if alone else _("Solo"), SOLO):
+    if menu_entry(_("End solo") if alone else _("Solo"), SOLO):
         actions.append(do(solo_layers, *row.layers))
     whole = subgroups_with_layers(project.document, group.name)
-    free = len(row.layers) > 1 and all(
-        project.document.switch_group_of(each) is None for each in row.layers
-    )
-    if item(_("Create switch"), icons.ICON_FA_MASKS_THEATER, enabled=free and not whole):
-        actions.append(do(create_switch, *row.layers, name=row.name))
+    reason = _switch_disabled_reason(project, row.layers)
     if whole:
-        draw_tooltip(explain_unswitchable_groups(whole))
+        reason = explain_unswitchable_groups(whole)
+    if menu_entry(_("Create switch"), icons.ICON_FA_MASKS_THEATER, reason=reason):
+        actions.append(do(create_switch, *row.layers, name=row.name))
     imgui.separator()
-    if item(_("Ungroup"), icons.ICON_FA_FOLDER_MINUS):
+    if menu_entry(_("Ungroup"), icons.ICON_FA_FOLDER_MINUS):
         actions.append(do(editing.edit_document, group_commands.ungroup_layers(group.name)))
     return actions

@@ -54,6 +54,7 @@ from app.ui.style.widgets import (
     LABEL_WIDTH,
     draw_tooltip,
     label,
+    menu_entry,
     shorten_text,
     small_text,
     text_button,
@@ -228,19 +229,19 @@ def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> li
     if text_button(text, FILL, _("The layer does not jump at that frame")):
         imgui.open_popup("reparent")
     if imgui.begin_popup("reparent"):
-        if imgui.menu_item_simple(_("Detach"), enabled=now is not None):
+        reason = _("The layer is attached to no other layer.") if now is None else None
+        if menu_entry(_("Detach"), reason=reason):
             actions.append(do(reparent_layer, layer.id, None))
         for other in reversed([each for each in document.layers if each is not layer]):
             is_circle = any(each is layer for each in document.parent_chain(other.id, frame))
             name = f"{_('To {name}').format(name=other.name)}###to {other.id}"
-            if imgui.menu_item_simple(name, enabled=not is_circle and other.id != now):
-                actions.append(do(reparent_layer, layer.id, other.id))
+            reason = None
             if is_circle:
-                text = _("At frame {frame} it is itself attached to {name}")
-                draw_tooltip(text.format(frame=frame, name=layer.name))
+                reason = _("At frame {frame} it is itself attached to {name}.")
             elif other.id == now:
-                text = _("It is already the parent at frame {frame}")
-                draw_tooltip(text.format(frame=frame))
+                reason = _("It is already the parent at frame {frame}.")
+            if menu_entry(name, reason=reason and reason.format(frame=frame, name=layer.name)):
+                actions.append(do(reparent_layer, layer.id, other.id))
         imgui.end_popup()
     keyed = layer.joint_frame(frame)
     if joint is not None and joint.frame == keyed and len(layer.attachments) > 1:

@@ -97,8 +97,8 @@ def _bar(look: Look, project: Project) -> list[Action]:
     )
     index, last = layers.index(project.layer), len(layers) - 1
 
-    def button(icon: str, name: str, hint: str, action: Action, *, enabled: bool = True) -> None:
-        if icon_button(look, icon, name, hint, enabled=enabled):
+    def button(icon: str, name: str, hint: str, action: Action, reason: str | None = None) -> None:
+        if icon_button(look, icon, name, hint, reason=reason):
             actions.append(action)
         imgui.same_line()
 
@@ -107,44 +107,23 @@ def _bar(look: Look, project: Project) -> list[Action]:
     )
     count = len(chosen)
     replace = _("Replace the layer's picture with another file. Handles, keys and parents stay.")
-    delete = (
-        ngettext("Delete the layer", "Delete the {count} selected layers", count)
-        if last
-        else _("A scene needs at least one layer")
-    ).format(count=count)
+    delete = ngettext("Delete the layer", "Delete the {count} selected layers", count)
+    alone = None if last else _("A scene needs at least one layer.")
+    highest = None if index < last else _("The layer is in front of all others already.")
+    lowest = None if index else _("The layer is behind all others already.")
     group = ngettext(
         "Put the layer in a group", "Put the {count} selected layers in a group", count
     )
-    button(
-        icons.ICON_FA_PLUS,
-        "add layer",
-        _("Add a picture as a layer"),
-        do(ask_pictures_to_add),
-    )
-    button(
-        icons.ICON_FA_CLONE,
-        "copy layer",
-        _("Duplicate the layer"),
-        do(duplicate_layer, active),
-    )
-    button(
-        icons.ICON_FA_FILE_IMAGE,
-        "replace picture",
-        replace,
-        do(ask_replacement_picture, active),
-    )
-    button(
-        icons.ICON_FA_ARROW_UP, "raise", _("Bring the layer forward"), forward, enabled=index < last
-    )
-    button(icons.ICON_FA_ARROW_DOWN, "lower", _("Send the layer back"), back, enabled=index > 0)
+    button(icons.ICON_FA_PLUS, "add layer", _("Add a picture as a layer"), do(ask_pictures_to_add))
+    duplicate = do(duplicate_layer, active)
+    button(icons.ICON_FA_CLONE, "copy layer", _("Duplicate the layer"), duplicate)
+    ask = do(ask_replacement_picture, active)
+    button(icons.ICON_FA_FILE_IMAGE, "replace picture", replace, ask)
+    button(icons.ICON_FA_ARROW_UP, "raise", _("Bring the layer forward"), forward, highest)
+    button(icons.ICON_FA_ARROW_DOWN, "lower", _("Send the layer back"), back, lowest)
     button(icons.ICON_FA_FOLDER_PLUS, "group layers", group.format(count=count), do(group_layers))
-    button(
-        icons.ICON_FA_TRASH,
-        "delete layer",
-        delete,
-        do(delete_layers, *chosen),
-        enabled=last > 0,
-    )
+    delete = delete.format(count=count)
+    button(icons.ICON_FA_TRASH, "delete layer", delete, do(delete_layers, *chosen), alone)
     imgui.new_line()
     return actions
 

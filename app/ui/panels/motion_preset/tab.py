@@ -145,7 +145,8 @@ def _joints(session: Session, look: Look, draft: MotionSetup) -> list[Action]:
         text = f"{icon_glyph(spec.icon)}  {way}###mirror joints"
         hint = _("{hint}: from the side that you dragged last")
         hint = hint.format(hint=spec.hint)
-        if text_button(text, next(widths), hint, enabled=bool(draft.joints)):
+        reason = None if draft.joints else _("Add a joint first.")
+        if text_button(text, next(widths), hint, reason=reason):
             actions.append(spec.action)
     return actions + draw_action_text_button(session, joint_placement.reset_joints, next(widths))
 
@@ -244,9 +245,9 @@ def _end(session: Session, look: Look, project: Project, draft: MotionSetup) -> 
     if reason:
         small_text(look, reason, look.palette.warning)
     widths = split_line(2)
-    if main_button(look, _("Apply") + "###give", next(widths), enabled=not reason):
+    hint = _("Set the keys and play the motion. One undo removes them.")
+    if main_button(look, _("Apply") + "###give", next(widths), hint, reason=reason):
         actions.append(do(apply_motion.apply_motion_preset))
-    draw_tooltip(reason or _("Set the keys and play the motion. One undo removes them."))
     if text_button(
         _("Cancel") + "###no motion", next(widths), "", shown_keys(move_tool.return_to_posing)
     ):

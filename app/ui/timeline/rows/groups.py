@@ -20,6 +20,7 @@ from app.ui.style.theme import SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
     is_hovered_or_held,
+    menu_entry,
     push_text_size,
     shorten_text,
 )
@@ -194,7 +195,8 @@ def _menu(bands: TimelineLayout, switch: SwitchGroup, start: int) -> list[Action
     channel = Channel(SWITCH, part=switch.name)
     keyed = source_frame(bands.project.document, channel, start)
     is_change = any(key.frame == keyed for key in switch.keys[1:])
-    if imgui.menu_item_simple(_("Delete"), enabled=is_change) and keyed is not None:
+    reason = None if is_change else _("The first key of a switch cannot be deleted.")
+    if menu_entry(_("Delete"), reason=reason) and keyed is not None:
         command = channel_commands.delete_keys({channel: frozenset({keyed})})
         actions.append(do(editing.edit_document, command))
     imgui.end_popup()
