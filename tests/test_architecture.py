@@ -255,7 +255,7 @@ MUTATING = {
     *("add", "append", "clear", "difference_update", "discard", "extend", "insert"),
     *("intersection_update", "pop", "popitem", "remove", "setdefault", "update"),
 }
-OWNERS = {"Project", "Session"}  # they hold the parts
+OWNERS = {"Project"}  # its runtimes and pending changes are no parts yet
 
 
 def state_parts() -> Iterator[tuple[str, ast.ClassDef]]:

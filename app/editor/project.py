@@ -16,9 +16,7 @@ from app.document import (
     Clip,
     Document,
     History,
-    Keyframe,
     Layer,
-    Meshing,
     PictureFile,
     Pose,
     PreviewPose,
@@ -38,56 +36,28 @@ from app.editor.parts.project_file import ProjectFile
 from app.editor.parts.selection import Selection
 from app.editor.parts.timeline import TimelineState
 from app.editor.parts.viewport_state import ViewportState, fit_view_around
-from app.editor.work.derived import Derived
 from app.editor.work.drag_session import DragSession, StoppedDrag
 from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime
+from app.editor.work.layer_setup import LayerSetup
+from app.editor.work.measurements import Measurements
 from app.editor.work.motion_setup import MotionJob
 from app.editor.work.pending_change import DeferredAction, PendingChange
+from app.editor.work.pose_edits import PoseEdits
 from app.editor.work.revised import Revised
-from app.editor.work.track_drag import Recording, TrackDrag
+from app.editor.work.track_drag import TrackDrag
 from app.motion import (
     BoundingBox,
-    MotionPaths,
     ParentTransforms,
     PoseSampler,
     parenting_key,
 )
 from app.render import View
-from app.reports import Curves
 from app.solving import KeyResolver
 from app.storage import Picture
 from engine.geometry import RigidMotion
-from engine.maps import Bounds
 
-EXTENTS = 32  # extents of the motion that are remembered for undo and redo
 # Most bytes of intermediate values that inactive layers keep, once they have series.
 MOST_RELEASABLE_BYTES = 64 * 2**20
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class LastFlip:
-    """The last flip.
-
-    `keys` are the copied keys; `poses` are the flipped poses at the layer's `frames`.
-    """
-
-    layer: int
-    keys: tuple[Keyframe, ...]
-    frames: frozenset[int]
-    poses: tuple[Pose, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class BlendPreview:
-    """A library pose that is blended into the pose at a frame.
-
-    `share` is from 0 to 1. Blends of one gesture are one undo step.
-    """
-
-    name: str
-    owner: int
-    gesture: object
-    share: float = 0.0
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -114,33 +84,10 @@ class Project(Revised):
     ended_gesture: object = None
     stopped_drag: StoppedDrag | None = None  # to be shown in a notice
 
-    # Distortion over time, of the active layer and of the compared method.
-    curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
-    comparison_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
-    # Motion paths of the active layer's handles, computed while they are shown.
-    paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
-    # Of attached layers; `current_parent_transforms` has those of the present document.
-    parent_transforms: Derived[tuple[object, ...], ParentTransforms | None] = field(
-        default_factory=lambda: Derived(None)
-    )
-    # Extent of the motion; measured first if export settings are shown, else last.
-    extent: Derived[tuple[object, ...], BoundingBox | None] = field(
-        default_factory=lambda: Derived(None, remembers=EXTENTS)
-    )
-
-    # Meshing of the next rebuild; None if it is the present meshing.
-    meshing: Meshing | None = None
-    previewed_limits: Bounds | None = None  # limits during a drag of their knob
-    # The layer with a domain older than its cut-out, and the clock's seconds when this was seen.
-    stale: tuple[Layer, float] | None = None
-    unbuildable: Layer | None = None  # a layer whose cut-out gives no domain
-    brush: float | None = None  # radius in pixels of the picture; None before it is set
-
+    measured: Measurements = field(default_factory=Measurements)
+    layer_setup: LayerSetup = field(default_factory=LayerSetup)
+    pose_edits: PoseEdits = field(default_factory=PoseEdits)
     timeline: TimelineState = field(default_factory=TimelineState)
-    recording: Recording | None = None  # until accepted or discarded
-    last_flip: LastFlip | None = None
-    blend_preview: BlendPreview | None = None
-    picked_pose: tuple[int, str] | None = None  # layer id, and name in its library
 
     @property
     def document(self) -> Document:
@@ -296,13 +243,13 @@ class Project(Revised):
         """The layer with a domain older than its cut-out that will be rebuilt."""
         layers = self.document.layers
         stale = next((each for each in layers if each.is_stale and not each.still), None)
-        return None if stale is self.unbuildable else stale
+        return None if stale is self.layer_setup.unbuildable else stale
 
     @property
     def current_parent_transforms(self) -> ParentTransforms | None:
         """Joints of the present document; None without joints, or while they are unknown."""
-        follows = self.parent_transforms.follows(parenting_key(self.document))
-        return self.parent_transforms.value if follows else None
+        follows = self.measured.parent_transforms.follows(parenting_key(self.document))
+        return self.measured.parent_transforms.value if follows else None
 
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
         """Return the active layer's placements at some frames; `unknown` while they are unknown."""
@@ -317,7 +264,7 @@ class Project(Revised):
         own, joints = self.document.layer(layer), self.current_parent_transforms
         if not own.attachments:
             return [transform_at(self.document, own, frame) for frame in frames]
-        if joints is None and (before := self.parent_transforms.value) is not None:
+        if joints is None and (before := self.measured.parent_transforms.value) is not None:
             joints = before if self._has_same_parents(before.document, own) else None
         return None if joints is None else [joints.placement(layer, frame) for frame in frames]
 

@@ -139,7 +139,7 @@ def is_due_in_time(session: Session) -> bool:
     return (
         project.timeline.playhead.since is not None
         or session.tutorial.state is not None
-        or project.stale is not None
+        or project.layer_setup.stale is not None
         or project.timeline.moved_at > -inf
         or bool(project.pending or project.deferred)
         or session.tools.active is not None
@@ -155,7 +155,7 @@ def follow_playhead(session: Session, project: Project) -> None:
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all values that decide which jobs are due."""
-    take, drag = project.recording, project.drag
+    take, drag = project.timeline.recording, project.drag
     return (
         *(
             project.document,
@@ -191,7 +191,7 @@ def _follow_document(session: Session, project: Project) -> None:
     """Update or recall derived values after a change of the document."""
     for identity, runtime in project.layer_runtimes.items():
         runtime.corrected = reuse_corrections(project.document, identity, runtime.corrected)
-    project.extent.recall(extent_key(project.document))
+    project.measured.extent.recall(extent_key(project.document))
     project.update_comparisons(
         session.display.compare_view.method if session.display.compare_view else None
     )
@@ -453,7 +453,7 @@ def _cut(session: Session, project: Project) -> Iterator[Job]:
 
 def _trace(session: Session, project: Project) -> Iterator[Job]:
     """Yield the job for motion paths of the active layer's handles, while some are shown."""
-    clip, paths = project.clip, project.paths
+    clip, paths = project.clip, project.measured.paths
     if session.display.overlays.paths and project.selection.handles:
         document, known, siblings = project.document, paths.value, project.samplers
         sibling = project.layer_runtime.store.sampler
@@ -467,7 +467,7 @@ def _trace(session: Session, project: Project) -> Iterator[Job]:
 
 def _compute_joints(session: Session, project: Project) -> Iterator[Job]:
     """Yield a job for some frames of the joints of attached layers."""
-    joints, source = project.parent_transforms, parenting_key(project.document)
+    joints, source = project.measured.parent_transforms, parenting_key(project.document)
     is_settled = not source or joints.follows(source) or joints.has_failed(source)
     if is_settled or ATTACHING in session.jobs.kinds:
         return
@@ -485,9 +485,9 @@ def _compute_joints(session: Session, project: Project) -> Iterator[Job]:
 
 def _measure(session: Session, project: Project) -> Iterator[Job]:
     """Yield jobs that measure the distortion of the in-betweens."""
-    comparison, wanted = project.layer_runtime.comparison, [(project.clip, project.curves)]
+    comparison, wanted = project.layer_runtime.comparison, [(project.clip, project.measured.curves)]
     if comparison is not None:
-        wanted.append((comparison.clip(project.document), project.comparison_curves))
+        wanted.append((comparison.clip(project.document), project.measured.comparison_curves))
     store, corrected = project.layer_runtime.store, project.layer_runtime.corrected
     for clip, curves in wanted:
         inbetweens = store.prepared(clip)
@@ -502,7 +502,11 @@ def _measure(session: Session, project: Project) -> Iterator[Job]:
 
 def _span(session: Session, project: Project) -> Iterator[Job]:
     """Yield the job that measures the extent of the motion, once all in-betweens exist."""
-    document, extent, source = project.document, project.extent, extent_key(project.document)
+    document, extent, source = (
+        project.document,
+        project.measured.extent,
+        extent_key(project.document),
+    )
     clips = _clips(project)
     if extent.follows(source) or not all(each.store.has(clip) for clip, each in clips):
         return
@@ -510,22 +514,24 @@ def _span(session: Session, project: Project) -> Iterator[Job]:
     if not all(each.is_whole for each in corrected.values()):
         return
     stores = {layer: runtime.store.snapshot() for layer, runtime in project.layer_runtimes.items()}
-    span = partial(measure_extent, document, stores, project.parent_transforms.value, corrected)
+    span = partial(
+        measure_extent, document, stores, project.measured.parent_transforms.value, corrected
+    )
     yield from _derive(session, SPANNING, extent, source, span)
 
 
 def _fit_motion(session: Session, project: Project) -> None:
     source = extent_key(project.document)
-    if project.extent.follows(source) and project.extent.value is not None:
-        viewing.zoom_to_box(session, project.extent.value)
-    elif project.extent.has_failed(source):
+    if project.measured.extent.follows(source) and project.measured.extent.value is not None:
+        viewing.zoom_to_box(session, project.measured.extent.value)
+    elif project.measured.extent.has_failed(source):
         project.viewport.stop_awaiting_extent()
 
 
 def _show(session: Session, project: Project) -> None:
     """Update the shown frame, and the frame of the compared method."""
     frame, document = playback.current_frame(session, project), project.document
-    if project.recording is not None and project.layer_runtime.corrected is not None:
+    if project.timeline.recording is not None and project.layer_runtime.corrected is not None:
         project.layer_runtime.corrected.lead(frame)
     shown, comparisons, poses = {}, {}, {}
     if any(each.shown and each.shown.frame != frame for each in project.layer_runtimes.values()):
@@ -543,7 +549,7 @@ def _show(session: Session, project: Project) -> None:
             earlier, other = comparison.shown or shown[layer], comparison.clip(document)
             # An unkeyed pose is the same in both methods.
             comparisons[layer] = show(other, frame, pose, [runtime.store], earlier)
-    known = project.parent_transforms.value
+    known = project.measured.parent_transforms.value
     for layer, attached in place_displayed_frames(
         document, shown, project.current_parent_transforms, poses, known
     ).items():

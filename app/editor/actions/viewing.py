@@ -214,7 +214,7 @@ def set_backdrop(session: Session, backdrop: str) -> None:
 @with_project
 def preview_meshing(_: Session, project: Project, meshing: Meshing) -> None:
     """Note the meshing that the next rebuild of the mesh uses."""
-    project.meshing = meshing
+    project.layer_setup.preview_meshing(meshing)
 
 
 @named_action("theme", _("Light or dark"), needs_project=False)

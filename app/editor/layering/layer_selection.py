@@ -12,7 +12,7 @@ def set_active_layer(session: Session, project: Project, identity: int) -> None:
     if identity != before:
         release_drag(session)
         project.layer_list.linger(before)
-        project.meshing = project.previewed_limits = None
+        project.layer_setup.forget_previews()
         session.tools.hover(None)
     project.selection.activate_layer(identity)
 

@@ -18,6 +18,7 @@ from app.document import (
 )
 from app.editor.work.derived import Derived
 from app.editor.work.revised import Revised
+from app.editor.work.track_drag import Recording
 
 SMALLEST, LARGEST = 0.002, 4.0  # em per frame
 MARGIN = 1.4  # em left and right of fitted frames
@@ -164,6 +165,7 @@ class TimelineState(Revised):
 
     playhead: Playhead = field(default_factory=Playhead)
     moved_at: float = -inf  # the clock's seconds when the playhead last moved
+    recording: Recording | None = None  # until accepted or discarded
     time_range: TimeRangeView | None = None  # visible range; None fits all frames
     gesture: TimeGesture | None = None
     # Visible range during the gesture, fixed so that nothing moves under the pointer.
@@ -201,9 +203,17 @@ class TimelineState(Revised):
     def set_speed(self, speed: float, document: Document, now: float) -> None:
         self.playhead = self.playhead.at_speed(speed, document, now)
 
-    def put_playhead(self, playhead: Playhead) -> None:
-        """Go on with another playhead, as at the start and the end of a recording."""
-        self.playhead = playhead
+    def start_recording(self, take: Recording) -> None:
+        """Play a recording with its own playhead."""
+        self.recording, self.playhead = take, take.playhead
+
+    def stop_recording(self) -> None:
+        """Put the playhead back on its frame and speed at the start of the recording."""
+        if (take := self.recording) is not None:
+            self.playhead = replace(take.playhead, since=None, speed=take.speed)
+
+    def forget_recording(self) -> None:
+        self.recording = None
 
     def keep_existing(self, document: Document) -> None:
         """Keep the playhead on a frame of a document."""

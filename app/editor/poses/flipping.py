@@ -10,7 +10,7 @@ from app.editor.session import Session, with_project
 
 def can_flip_again(project: Project) -> bool:
     """Return whether the selected keys still hold the last flipped poses."""
-    flip = project.last_flip
+    flip = project.pose_edits.last_flip
     if (
         flip is None
         or project.selection.frames != flip.frames
@@ -39,7 +39,7 @@ def move_mirror_axis(_: Session, project: Project, x: float | None, gesture: obj
 @with_project
 def flip_pose_again(session: Session, project: Project, gesture: object) -> None:
     """Flip the last flipped poses again, at the present axis."""
-    flip = project.last_flip
+    flip = project.pose_edits.last_flip
     if flip is not None and can_flip_again(project):
         copied = CopiedKeys(project.layer, flip.keys)
         found = [find_paste_destination(project.document, copied, project.layer, "flipped")]

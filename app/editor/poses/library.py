@@ -1,7 +1,6 @@
 """Pose libraries: named poses that are keyed or blended in."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -13,7 +12,7 @@ from app.editor.actions.posing.pose_drag import drag_handles, release_drag
 from app.editor.parts.clipboard import CopiedKeys
 from app.editor.poses import pasting, pasting_targets, pose_insertion
 from app.editor.poses.paste_destinations import PasteDestination, find_paste_destination
-from app.editor.project import BlendPreview, Project
+from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.drag_session import DragStart
 from app.editor.work.jobs import JobKind
@@ -44,7 +43,7 @@ def _save_pose(session: Session, project: Project, layer: Layer, pose: Pose) -> 
         project, project.selection.active, taken, layer.bounds
     )
     editing.edit_document(session, pose_commands.save_pose(project.selection.active, key.pose))
-    project.picked_pose = (project.selection.active, project.layer.library[-1].name)
+    project.pose_edits.pick(project.selection.active, project.layer.library[-1].name)
 
 
 class PoseOffer(NamedTuple):
@@ -108,7 +107,7 @@ def _put(session: Session, project: Project, offer: PoseOffer, frame: int) -> No
     if landing.disabled_reason:
         session.notices.show(landing.disabled_reason)
         return
-    project.picked_pose = (offer.owner.id, offer.kept.name)
+    project.pose_edits.pick(offer.owner.id, offer.kept.name)
     pasting.paste_poses(session, project, [landing], "as it is", frame, label=_("Use pose"))
 
 
@@ -127,12 +126,7 @@ def blend_library_pose(
         The layer of the library; by default the active layer.
     """
     offer = _find_library_pose(project, name, owner)
-    begun = project.blend_preview
-    if begun is None or (begun.name, begun.owner) != (name, offer.owner.id):
-        project.blend_preview = begun = BlendPreview(
-            name=name, owner=offer.owner.id, gesture=object()
-        )
-    project.blend_preview = replace(begun, share=share)
+    blend = project.pose_edits.blend(name, offer.owner.id, share)
     targets = pasting_targets.pasted_targets(
         project, _paste_destination(project, offer), "as it is"
     )
@@ -144,13 +138,13 @@ def blend_library_pose(
             if identity in start.targets
         }
 
-    drag_handles(session, mix, gesture=begun.gesture)
+    drag_handles(session, mix, gesture=blend.gesture)
 
 
 @with_project
 def end_pose_blend(session: Session, project: Project) -> None:
     """Keep the blended pose; with a share of 1, key the library pose exactly."""
-    blend, project.blend_preview = project.blend_preview, None
+    blend = project.pose_edits.end_blend()
     release_drag(session)
     drag = project.drag
     if blend is None or drag is None or blend.gesture not in drag.target_changes:
@@ -172,4 +166,4 @@ def _between(one: Target, other: Target, share: float) -> Target:
 @with_project
 def rename_library_pose(session: Session, project: Project, name: str, to: str) -> None:
     editing.edit_layer(session, pose_commands.rename_pose, name, to)
-    project.picked_pose = (project.selection.active, to)
+    project.pose_edits.pick(project.selection.active, to)

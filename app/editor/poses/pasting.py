@@ -28,9 +28,10 @@ from app.editor.poses.paste_destinations import (
 from app.editor.poses.pasting_keys import paste_keys, pasteable_keys
 from app.editor.poses.pasting_targets import fit_copied_keys
 from app.editor.poses.pasting_tracks import paste_track, pasteable_tracks
-from app.editor.project import LastFlip, Project
+from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
+from app.editor.work.pose_edits import LastFlip
 from app.solving import Rig, fit_shown_pose, flip_poses
 from app.texts import _, ngettext
 
@@ -263,9 +264,10 @@ def _solving(
 def _note_flip(project: Project, landing: PasteDestination, flipped: Sequence[Keyframe]) -> None:
     """Note a flip, so that moving the mirror axis flips the same poses again."""
     layer = landing.layer.id
-    project.last_flip = LastFlip(
+    flip = LastFlip(
         layer=layer,
         keys=tuple(fit_copied_keys(project, landing)),
         frames=project.selection.keys.get(pose_channel(layer), frozenset()),
         poses=tuple(key.pose for key in flipped),
     )
+    project.pose_edits.note_flip(flip)

@@ -227,7 +227,7 @@ def list_status_items(session: Session) -> list[StatusItem]:
 
 def _distortion(project: Project) -> StatusItem | None:
     """Return the largest distortion of the shown frame, of the kind nearest to its limit."""
-    shown, curves = project.layer_runtime.shown, project.curves.value
+    shown, curves = project.layer_runtime.shown, project.measured.curves.value
     if shown is None:
         return None
     if shown.pose is not None:

@@ -100,8 +100,8 @@ def draw_deform_panel(session: Session, look: Look, project: Project) -> list[Ac
 
 
 def _wanted_bounds(project: Project) -> Bounds:
-    if project.previewed_limits is not None:
-        return project.previewed_limits
+    if project.layer_setup.previewed_limits is not None:
+        return project.layer_setup.previewed_limits
     return project.layer.bounds if project.key_resolver is None else project.key_resolver.bounds
 
 

@@ -39,7 +39,7 @@ def draw_distortion_curves(session: Session, look: Look, project: Project) -> li
     match option_buttons(look, "curves", KINDS, session.display.curve_kind):
         case "relative" | "absolute" as kind:
             actions.append(do(viewing.show_curves, kind))
-    curves = project.curves.value
+    curves = project.measured.curves.value
     if curves is None:
         small_text(look, _("Measuring…"))
         return actions
@@ -47,7 +47,7 @@ def draw_distortion_curves(session: Session, look: Look, project: Project) -> li
     bounds = project.layer.bounds
     upper, lower = _plots(session.display.curve_kind, curves, bounds)
     other_upper, other_lower = None, None
-    comparison, other = project.layer_runtime.comparison, project.comparison_curves
+    comparison, other = project.layer_runtime.comparison, project.measured.comparison_curves
     if comparison is not None and other.value is not None:
         if other.follows(comparison.clip(project.document)):
             other_upper, other_lower = _plots(session.display.curve_kind, other.value, bounds)

@@ -46,7 +46,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
     if project.layer_runtime.shown is None:
         return []
     settings = project.document.export
-    motion = project.extent.value or bounding_box(project.layer_runtime.shown.positions)
+    motion = project.measured.extent.value or bounding_box(project.layer_runtime.shown.positions)
     view = frame_view(settings, project.document, motion)
     box = find_shown_box(view)
     # The camera's frame is always visible.

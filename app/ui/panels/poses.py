@@ -123,7 +123,7 @@ def _tile(
     draw_list.add_rect_filled(low, high, colour_u32(palette.desk), 0.4 * em)
     if texture is not None:
         _show(texture, low, high, 0.4 * em)
-    is_picked = (owner.id, kept.name) == project.picked_pose
+    is_picked = (owner.id, kept.name) == project.pose_edits.picked_pose
     if hot or is_picked:
         draw_list.add_rect(
             low, high, colour_u32(palette.accent, 1.0 if hot else 0.6), 0.4 * em, 1.5
@@ -158,7 +158,7 @@ def _show(texture: int, low: ImVec2, high: ImVec2, rounding: float) -> None:
 
 
 def _blend(look: Look, project: Project, offer: library.PoseOffer, width: float) -> list[Action]:
-    begun, name, owner = project.blend_preview, offer.kept.name, offer.owner.id
+    begun, name, owner = project.pose_edits.blend_preview, offer.kept.name, offer.owner.id
     is_this = begun is not None and (begun.name, begun.owner) == (name, owner)
     share = begun.share if begun is not None and is_this else 0.0
     # Close to the name above.

@@ -46,13 +46,13 @@ def mark_all(
     if session.display.overlays.paths and project.timeline.playhead.since is None:
         path_lines, dots = _paths(session, project, palette, scale)
         lines += path_lines
-    if project.timeline.playhead.since is None or project.recording is not None:
+    if project.timeline.playhead.since is None or project.timeline.recording is not None:
         colours = to_rgba(palette.accent), to_rgba(palette.text), to_rgba(palette.desk, 0.8)
         path_lines, path_dots = mark_path(project, *colours, scale)
         lines, dots = [*lines, *path_lines], (*dots, *path_dots)
     if session.export.frame_box is not None:
         lines.append(_frame(session.export.frame_box, palette, scale))
-    is_playing = project.timeline.playhead.since is not None and project.recording is None
+    is_playing = project.timeline.playhead.since is not None and project.timeline.recording is None
     if not session.display.overlays.handles or is_playing or session.tools.motion_setup is not None:
         return tuple(lines), dots
     handle_lines, discs = mark_handles(_handles(session, project, shown), scale=scale)
@@ -214,7 +214,7 @@ def _paths(
 
     If a parent layer has just moved, there are no paths until they are computed.
     """
-    paths = project.paths.value
+    paths = project.measured.paths.value
     if paths is None or len(paths.frames) < 2 or paths.clip.layer.id != project.selection.active:
         return [], ()
     frames = _frames_of_paths(session, project, paths)

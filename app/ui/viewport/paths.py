@@ -29,7 +29,12 @@ def mark_path(
     project: Project, accent: Colour, key: Colour, rim: Colour, scale: float
 ) -> tuple[list[Line], tuple[Disc, ...]]:
     """Return the path of the selected track, and the trail of a recorded drag."""
-    lines, discs, track, take = list[Line](), list[Disc](), _chosen(project), project.recording
+    lines, discs, track, take = (
+        list[Line](),
+        list[Disc](),
+        _chosen(project),
+        project.timeline.recording,
+    )
     if take is not None and len(take.samples) > 1:
         trail = np.array([sample.place for sample in take.samples])
         lines.append(Line(points=trail, colour=(*key[:3], 0.35 * key[3]), width=3.0 * scale))

@@ -40,7 +40,7 @@ def _is_busy(session: Session) -> bool:
     # The system's dialog has its own input. Its answer is polled.
     asks_system = session.dialogs.uses_system and isinstance(session.dialogs.current, FileDialog)
     is_working = bool(session.jobs.kinds) or session.export.run is not None
-    is_working |= project is not None and bool(project.stale or project.deferred)
+    is_working |= project is not None and bool(project.layer_setup.stale or project.deferred)
     return is_moving or is_working or asks_system or bool(session.notices.toasts)
 
 

@@ -347,11 +347,11 @@ def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(wind
 @pytest.mark.usefixtures("everything")
 def test_joints_of_an_earlier_document_are_not_used(window, swung):
     (way,) = ways(window, swung)
-    joints = swung.parent_transforms.value
+    joints = swung.measured.parent_transforms.value
     layer = swung.document.layer(identity(swung, "body"))
     pose = replace(layer.keys[0].pose, phi=layer.domain.cage + 50)
     editing.edit_document(window.session, key_commands.replace_key_pose(layer.id, 0, pose))
-    assert swung.parent_transforms.value is joints
+    assert swung.measured.parent_transforms.value is joints
     assert swung.placements([0], IDENTITY_MOTION) == [IDENTITY_MOTION]
     assert swung.placed_at(swung.selection.active, [0]) is None
     assert ways(window, swung) == [], "a way at a place where its layer is no more"

@@ -955,8 +955,8 @@ def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_pat
     joint = posed.document.layer(arm).attachments[0]
     assert posed.document.layer(body).domain.contains(np.array([joint.parent_point])).all()
     assert joint.parent_point.imag < 82
-    assert not posed.parent_transforms.has_failed(posed.parent_transforms.source)
-    assert posed.parent_transforms.value is not None
+    assert not posed.measured.parent_transforms.has_failed(posed.measured.parent_transforms.source)
+    assert posed.measured.parent_transforms.value is not None
     for _ in range(2):
         window.act(editing.undo)
     assert posed.document is before

@@ -81,7 +81,7 @@ def test_on_a_posed_drawing_the_brush_reaches_what_is_shown_there(window, tab):
 
 def test_a_brush_that_reaches_no_outline_says_so(window, tab):
     window.session.tools.mode = "stiff"
-    tab.brush = 1.0
+    tab.layer_setup.brush = 1.0
     stiffness_editing.paint_stiffness(window.session, [middle(tab)])
     assert tab.layer.stiffness is None
     assert "reaches no outline" in window.session.notices.toasts[-1].text

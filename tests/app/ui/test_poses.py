@@ -225,7 +225,7 @@ def test_a_pose_is_blended_in_by_its_bar_as_one_step(window, project):
     rest, up = HANDLES["arm.L"], targets(project, 12)[LEFT]
     assert targets(project, 0)[LEFT] == pytest.approx((rest + up) / 2, abs=1.0)
     assert project.layer.key(0).pose.certificate.is_certified
-    assert project.blend_preview is None
+    assert project.pose_edits.blend_preview is None
     editing.undo(window.session)
     assert project.document is before
     window.run(lambda robot: drag(robot, 1.2))

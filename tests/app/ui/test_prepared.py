@@ -24,8 +24,8 @@ def prepared(project):
         "in-betweens": runtime.store.has(clip),
         "corrections": runtime.corrected.is_whole,
         "smooth playback": isinstance(vertices, StreamedVertices),
-        "distortion": project.curves.follows(clip),
-        "extent": project.extent.follows(extent_key(project.document)),
+        "distortion": project.measured.curves.follows(clip),
+        "extent": project.measured.extent.follows(extent_key(project.document)),
     }
 
 

@@ -101,7 +101,7 @@ def test_methods_for_comparison_play_beside_the_drawing_and_are_measured(window,
     own = between.layer_runtime.shown.positions
     distance = np.abs(own - comparison.shown.positions).max() / np.ptp(own.real)
     assert 1e-5 < distance < 0.5
-    curves = between.comparison_curves.value
+    curves = between.measured.comparison_curves.value
     assert curves.clip.baseline is baseline
     assert np.isfinite(curves.k).all()
     assert between.document is document
@@ -154,7 +154,7 @@ def test_both_are_measured_and_the_linear_one_leaves_the_bounds(window, between)
     viewing.toggle_comparison(window.session)
     window.show_tab("Distortion")
     window.settle()
-    own, other = between.curves.value, between.comparison_curves.value
+    own, other = between.measured.curves.value, between.measured.comparison_curves.value
     assert own.k_share.max() <= 1 + 1e-6
     assert own.tau_share.max() <= 1 + 1e-6
     assert other.clip.layer.variant is Variant.LINEAR

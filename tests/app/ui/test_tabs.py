@@ -185,12 +185,12 @@ def test_knob_that_is_dragged_sets_the_bound_once(window, project, tab):
         robot.mouse_down(0)
         robot.mouse_move_to_pos(ImVec2(middle.x + 90, middle.y))
         assert project.document is before
-        assert project.previewed_limits.sigma_a > NATURAL.bounds.sigma_a
+        assert project.layer_setup.previewed_limits.sigma_a > NATURAL.bounds.sigma_a
         robot.mouse_up(0)
 
     tab("Deform", drag)
     assert project.layer.bounds.sigma_a > NATURAL.bounds.sigma_a
-    assert project.previewed_limits is None
+    assert project.layer_setup.previewed_limits is None
     editing.undo(window.session)
     assert project.document is before
     editing.redo(window.session)
@@ -232,7 +232,7 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
 
     tab("Distortion", act)
     assert window.session.display.overlays.heat_map == "sigma_a"
-    curves = project.curves.value
+    curves = project.measured.curves.value
     assert curves.clip == project.clip
     assert curves.k_share.max() <= 1 + 1e-3
     assert curves.k.max() == pytest.approx(largest(project, "k"), rel=0.1)
@@ -240,8 +240,8 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
         window.session, channel_commands.move_keys({pose_channel(0): frozenset({24})}, 4)
     )
     window.settle()
-    assert project.curves.follows(project.clip)
-    assert project.curves.value.frames[-1] == 28
+    assert project.measured.curves.follows(project.clip)
+    assert project.measured.curves.value.frames[-1] == 28
 
 
 @pytest.mark.usefixtures("everything")
@@ -256,7 +256,7 @@ def test_curves_of_an_older_document_are_not_kept(window, project, tab):
         window.session, channel_commands.move_keys({pose_channel(0): frozenset({28})}, 4)
     )
     window.settle()
-    assert project.curves.follows(project.clip)
+    assert project.measured.curves.follows(project.clip)
     assert project.document is not older
 
 
@@ -411,7 +411,7 @@ def test_frame_of_the_export_shows_only_with_its_tab(window, project, tab):
     tab("Export", lambda _: None)
     assert window.session.export.frame_box is not None
     window.settle()
-    assert project.extent.follows(extent_key(project.document))
+    assert project.measured.extent.follows(extent_key(project.document))
     tab("Handle", lambda _: None)
     assert window.session.export.frame_box is None
 
@@ -426,35 +426,37 @@ def note_of_the_frame(window, project):
 
     window.run(look)
     source = extent_key(project.document)
-    return project.extent.follows(source), where["start"]
+    return project.measured.extent.follows(source), where["start"]
 
 
 @pytest.mark.usefixtures("everything")
 def test_extent_follows_undo_and_redo_at_once(window, project, tab):
     tab("Export", lambda _: None)
-    first = project.extent.value
+    first = project.measured.extent.value
     known, place = note_of_the_frame(window, project)
     assert known
     set_targets(window.session, {1: Target(position=CENTRE + 2.5 * RADIUS)})
     window.frames(1)
     known, waiting = note_of_the_frame(window, project)
     window.settle()
-    second = project.extent.value
+    second = project.measured.extent.value
     assert second.upper.real > first.upper.real + 5
     known, after = note_of_the_frame(window, project)
     assert known
     assert place == waiting == after, "the panel does not jump when its note changes"
     editing.undo(window.session)
     window.frames(2)
-    assert project.extent.value == first
+    assert project.measured.extent.value == first
     editing.redo(window.session)
     window.frames(2)
-    assert project.extent.value == second
+    assert project.measured.extent.value == second
     editing.undo(window.session)
     tab("Handle", lambda _: None)
     editing.edit_document(window.session, channel_commands.move_keys({pose_channel(0): {24}}, 3))
     window.settle()
-    assert project.extent.follows(extent_key(project.document)), "where the tab is hidden, too"
+    assert project.measured.extent.follows(extent_key(project.document)), (
+        "where the tab is hidden, too"
+    )
 
 
 def test_export_starts_repeats_and_reports(window, project, tab, tmp_path):

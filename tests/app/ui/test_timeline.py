@@ -329,11 +329,11 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     project.history.do(shape_commands.set_auto_pins(0, enabled=False))
     window.run(lambda robot: robot.key_press(int(window.Key.j)))
     window.settle()
-    assert project.paths.value is None  # nothing is selected
+    assert project.measured.paths.value is None  # nothing is selected
     project.selection.handles = frozenset({1})
     window.settle()
-    paths = project.paths.value
-    assert project.paths.follows(project.clip)
+    paths = project.measured.paths.value
+    assert project.measured.paths.follows(project.clip)
     assert paths.positions.shape == (61, 2)
     places = CENTRE + RADIUS / 2 * np.exp(1j * np.array([0.0, 0.3, -0.3, 0.1]))
     np.testing.assert_allclose(paths.positions[list(FRAMES), 1], places, atol=1e-6)
@@ -349,7 +349,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     )
     project.selection.handles = frozenset({1})
     window.settle()
-    assert np.abs(project.paths.value.positions - paths.positions)[6:20].max() > 0.1
+    assert np.abs(project.measured.paths.value.positions - paths.positions)[6:20].max() > 0.1
     window.session.display.overlays = replace(window.session.display.overlays, paths=False)
 
 

@@ -331,7 +331,7 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     window.settle()
     before = bent.document
     record(window, bent, CIRCLE)
-    take = bent.recording
+    take = bent.timeline.recording
     assert take is not None
     assert take.is_over
     assert bent.timeline.playhead.since is None
@@ -353,7 +353,7 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     fewest = len(bent.layer.tracks[0].keys)
     assert many > few >= fewest
     window.run(lambda robot: robot.item_click("**/Keep"))
-    assert bent.recording is None
+    assert bent.timeline.recording is None
     assert bent.selected_track == END
     bent.history.undo()
     assert bent.document is before, "one take is one step"
@@ -364,7 +364,7 @@ def test_a_recording_is_as_smooth_as_the_hand_was_on_the_screen(window, bent):
     playback.scrub(window.session, 0)
     window.settle()
     record(window, bent, CIRCLE)
-    take, scale = bent.recording, bent.view_on(window.session.display.screen).scale
+    take, scale = bent.timeline.recording, bent.view_on(window.session.display.screen).scale
     assert take.scale == scale
     keys = {}
     for factor in (0.1, 1.0, 10.0):
@@ -402,7 +402,7 @@ def test_escape_ends_a_recording_and_takes_it_back(window, brief):
 
     record(window, brief, ARC, until=until)
     assert brief.document is before
-    assert brief.recording is None
+    assert brief.timeline.recording is None
     assert brief.timeline.playhead.since is None
     assert playback.current_frame(window.session, brief) == 0
 
@@ -414,7 +414,7 @@ def test_the_end_of_the_range_ends_a_recording_and_other_keys_stay(window, brief
     window.settle()
     taken = [key for key in brief.layer.tracks[0].keys if key.frame == 1]
     record(window, brief, CIRCLE)
-    assert brief.recording.is_over
+    assert brief.timeline.recording.is_over
     (track,) = brief.layer.tracks
     frames = [key.frame for key in track.keys]
     assert track.keys[0] == taken[0]
@@ -428,7 +428,7 @@ def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, 
     playback.scrub(window.session, 5)
     window.settle()
     record(window, brief, CIRCLE)
-    take = brief.recording
+    take = brief.timeline.recording
     assert take.is_over
     assert take.samples[-1].time == 5 + LAST
     (track,) = brief.layer.tracks
@@ -449,7 +449,7 @@ def test_deleting_a_handle_ends_its_recording(window, brief, is_over):
             stop_recording(session)
         window.act(remove_handles, frozenset({END}))
         window.frames(2)
-        assert brief.recording is None
+        assert brief.timeline.recording is None
         assert END not in [handle.id for handle in brief.layer.handles]
         assert not [toast for toast in session.notices.toasts if toast.details]
 
@@ -458,7 +458,7 @@ def test_a_click_records_nothing(window, brief):
     before = brief.document
     record(window, brief, [])
     assert brief.document is before
-    assert brief.recording is None
+    assert brief.timeline.recording is None
     assert brief.timeline.playhead.since is None
 
 
@@ -507,7 +507,9 @@ def test_a_still_pointer_over_a_hopping_body_records_a_still_handle(window, brie
     (start,) = in_scene(window, brief, [0])
 
     def until(robot):
-        while brief.recording is None or brief.recording.samples[-1:] < [(LATER,)]:
+        while brief.timeline.recording is None or brief.timeline.recording.samples[-1:] < [
+            (LATER,)
+        ]:
             window.session.jobs.wait_until_idle()
             robot.yield_()
         robot.mouse_up(0)
@@ -537,7 +539,7 @@ def test_a_pointer_that_goes_with_the_body_changes_no_shape(window, brief, hop):
 
     begun = session.clock()
     start_recording(session, END, place(), gesture=object())
-    while not brief.recording.is_over:
+    while not brief.timeline.recording.is_over:
         drag_recorded_handle(session, place())
         window.frames()
     window.settle()
@@ -555,11 +557,11 @@ def test_passes_add_up_and_undo_takes_back_the_last(window, brief):
     record(window, brief, ARC / 5, handle=0)
     assert {track.handles for track in brief.layer.tracks} == {(END,), (0,)}
     assert brief.layer.track_of(END) == first
-    assert brief.recording is not None
+    assert brief.timeline.recording is not None
     editing.undo(window.session)
     window.settle()
     assert brief.layer.tracks == (first,)
-    assert brief.recording is None, "there is nothing to be kept"
+    assert brief.timeline.recording is None, "there is nothing to be kept"
 
 
 def test_a_planted_track_is_recorded_in_places_of_the_picture(window, brief):
@@ -573,7 +575,7 @@ def test_a_planted_track_is_recorded_in_places_of_the_picture(window, brief):
     record(window, brief, ARC)
     (track,) = brief.layer.tracks
     assert track.is_scene_space
-    places = {sample.time: sample.place for sample in brief.recording.samples}
+    places = {sample.time: sample.place for sample in brief.timeline.recording.samples}
     for key in track.keys:
         time = min(places, key=lambda time: abs(time - key.frame))
         assert abs(key.place - places[time]) < 5

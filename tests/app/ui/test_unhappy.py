@@ -309,7 +309,7 @@ def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, loose):
     window.settle()
     assert len(loose.document.layers[0].domain.cage) != len(cage)
     assert loose.unkeyed_pose is None
-    assert loose.meshing is None
+    assert loose.layer_setup.meshing is None
     assert loose.layer_runtime.shown.is_current
 
 
@@ -554,7 +554,7 @@ WAITING = {
         session, shape_commands.set_variant, "nu"
     ),
     frame_update.SPANNING: lambda session: (
-        setattr(session.project, "extent", Derived(None)),
+        setattr(session.project.measured, "extent", Derived(None)),
         export_settings.preview_export_frame(session, BoundingBox(0j, 1 + 1j)),
         run_update_steps(session),
     ),
@@ -605,7 +605,7 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
     assert other.file.name == "s"
     assert len(other.document.layers[0].keys) == 1
     assert other.history.undo_label is None
-    assert other.extent.source in (None, extent_key(other.document))
+    assert other.measured.extent.source in (None, extent_key(other.document))
     assert (other.visible_drag, other.key_resolver, other.unkeyed_pose) == (None, None, None)
     assert other.layer_runtime.shown.is_current
     assert loose.document is closed

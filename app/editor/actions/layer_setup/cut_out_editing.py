@@ -85,12 +85,12 @@ def shrink_brush(session: Session, project: Project) -> None:
 @with_project
 def set_brush_radius(_: Session, project: Project, radius: float) -> None:
     """Set the radius of the brush, in pixels of the picture."""
-    project.brush = min(max(radius, SMALLEST_BRUSH), LARGEST_BRUSH)
+    project.layer_setup.set_brush(min(max(radius, SMALLEST_BRUSH), LARGEST_BRUSH))
 
 
 def brush_radius(project: Project) -> float:
-    if project.brush is not None:
-        return project.brush
+    if project.layer_setup.brush is not None:
+        return project.layer_setup.brush
     return max(4.0, FIRST_BRUSH * max(project.layer.picture.size))
 
 

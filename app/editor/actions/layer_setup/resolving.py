@@ -26,20 +26,20 @@ REST = 0.5  # seconds after which a brush counts as resting
 @with_project
 def preview_limits(_: Session, project: Project, bounds: Bounds) -> None:
     """Preview limits while their knob is dragged; nothing is solved yet."""
-    project.previewed_limits = bounds
+    project.layer_setup.preview_limits(bounds)
 
 
 @with_project
 def set_limits(session: Session, project: Project, bounds: Bounds) -> None:
     """Set the limits; keys that exceed them are solved again."""
-    project.previewed_limits = bounds
+    project.layer_setup.preview_limits(bounds)
     cancel_solving_keys(session)
     pending_changes.run_when_idle(session, do(_set_limits, bounds), _("Limits"))
 
 
 @with_project
 def _set_limits(session: Session, project: Project, bounds: Bounds) -> None:
-    project.previewed_limits = None
+    project.layer_setup.preview_limits(None)
     certificates = [pose.certificate for pose in project.layer.poses]
     if all(bounds.allow(k=c.k, sigma_a=c.sigma_a, sigma_b=c.sigma_b) for c in certificates):
         editing.edit_layer(session, shape_commands.set_limits, bounds)
@@ -111,7 +111,7 @@ def rebuild_mesh(session: Session) -> None:
 
 @with_project
 def _rebuild_mesh(session: Session, project: Project) -> None:
-    layer, meshing = project.layer, project.meshing or project.layer.meshing
+    layer, meshing = project.layer, project.layer_setup.meshing or project.layer.meshing
     begin_solving_keys(session, KeyResolver(before=layer, bounds=layer.bounds, meshing=meshing))
 
 
@@ -119,13 +119,9 @@ def _rebuild_mesh(session: Session, project: Project) -> None:
 def rebuild_changed_cut_out(session: Session, project: Project) -> None:
     """Rebuild the domain after a change of the cut-out, once the brush rests; once a frame."""
     stale = project.stale_layer
-    if stale is None:
-        project.stale = None
-        return
-    if project.stale is None or project.stale[0] is not stale:
-        project.stale = stale, session.clock()
+    waited = project.layer_setup.note_stale(stale, session.clock())
     is_busy = session.tools.active is not None or project.pending
-    if not is_busy and session.clock() - project.stale[1] >= REST:
+    if stale is not None and not is_busy and waited >= REST:
         resolver = KeyResolver(before=stale, bounds=stale.bounds, meshing=stale.meshing)
         _go_on(session, project, resolver)
 
@@ -140,7 +136,7 @@ def cancel_solving_keys(session: Session, project: Project) -> None:
     """Cancel the current solve or rebuild."""
     session.jobs.drop(SOLVING_KEYS)
     if project.key_resolver is not None and _follows_cut_out(project.key_resolver):
-        project.unbuildable = project.key_resolver.before
+        project.layer_setup.refuse(project.key_resolver.before)
     project.pending = [change for change in project.pending if not change.key_resolver]
 
 
@@ -170,7 +166,7 @@ def _go_on(session: Session, project: Project, resolver: KeyResolver) -> None:
             return
         builds = resolver.meshing is not None
         if builds:
-            project.unbuildable = resolver.before
+            project.layer_setup.refuse(resolver.before)
         failure = _("The mesh was not changed") if builds else _("The limits were not changed")
         report_failure(session, failure, error)
 
@@ -193,7 +189,7 @@ def _accept(session: Session, project: Project, resolver: KeyResolver) -> None:
         project.history.do(resolver.command, gesture=gesture)
         if resolver.new_layer is not None:
             project.history.set_preview_pose(None, gesture=gesture)
-            project.meshing = None
+            project.layer_setup.preview_meshing(None)
     if resolver.replaces_picture:
         update_layer_runtimes(project)
     for number, notice in enumerate(resolver.notices):

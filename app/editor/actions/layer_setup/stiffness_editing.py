@@ -37,7 +37,7 @@ def toggle_stiffness_tool(session: Session, project: Project, tool: StiffnessToo
     if session.tools.active is None:
         playback.stop_playback(session)
         session.tools.toggle(tool or "pose")
-        if project.brush is None:
+        if project.layer_setup.brush is None:
             cut_out_editing.set_brush_radius(session, FIRST_BRUSH * max(project.layer.picture.size))
 
 

@@ -164,7 +164,7 @@ def _prepare(
         layer: (runtime.fine or runtime.store).sampler or runtime.store.sampler
         for layer, runtime in project.layer_runtimes.items()
     }
-    extent = project.extent
+    extent = project.measured.extent
     box = extent.value if extent.follows(extent_key(document)) else None
     cancellation = session.export.cancellation
 

@@ -21,7 +21,7 @@ def ask_curves_png(session: Session) -> None:
 @with_project
 def save_curves(session: Session, project: Project, path: Path) -> None:
     """Save the curves as a picture, or as numbers if the name does not end in .png."""
-    curves = project.curves.value
+    curves = project.measured.curves.value
     if curves is None:
         return
     check_writable(path, sources=project.file.sources)

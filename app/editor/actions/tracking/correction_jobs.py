@@ -23,7 +23,7 @@ Work = Callable[[], CorrectionUpdate]
 
 def is_track_drag_pending(session: Session, project: Project) -> bool:
     """Return whether a handle is dragged on its track; only the shown frame is computed then."""
-    is_recorded = project.recording is not None and not project.recording.is_over
+    is_recorded = project.timeline.recording is not None and not project.timeline.recording.is_over
     return is_recorded or (session.tools.active is not None and project.selected_track is not None)
 
 
@@ -49,7 +49,9 @@ def correction_jobs_for_shown_frame(session: Session, project: Project) -> Itera
 
 def _follow(session: Session, project: Project) -> Iterator[Job]:
     is_playing = project.timeline.playhead.since is not None
-    if CORRECTING_SHOWN_FRAME in session.jobs.kinds or (is_playing and project.recording is None):
+    if CORRECTING_SHOWN_FRAME in session.jobs.kinds or (
+        is_playing and project.timeline.recording is None
+    ):
         # During playback the correction would come too late.
         return
     frame, is_urgent = (
@@ -70,7 +72,7 @@ def _ground(session: Session, project: Project) -> Iterator[Job]:
         session.tools.mode == "record"
         or project.selected_track is not None
         or project.track_drags
-        or project.recording
+        or project.timeline.recording
     )
     if not wanted or FINDING_BASE_FRAMES in session.jobs.kinds:
         return

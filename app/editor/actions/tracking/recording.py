@@ -74,8 +74,7 @@ def start_recording(
     frames, played = document.frames, document.played_frames
     # A recording goes on over a loop's end, at most once round. The end of a preview range jumps.
     goes_round = document.loop and played == frames
-    project.timeline.put_playhead(running)
-    project.recording = Recording(
+    take = Recording(
         layer=project.selection.active,
         handle=handle if track is None else track.handles[0],
         gesture=gesture,
@@ -87,13 +86,14 @@ def start_recording(
         scale=project.view_on(session.display.screen).scale,
         smoothing=SMOOTHING,
     )
+    project.timeline.start_recording(take)
 
 
 @with_project
 def drag_recorded_handle(_: Session, project: Project, place: complex) -> None:
     """Set the target of the recorded handle, a place of the scene."""
-    if project.recording is not None:
-        project.recording.place = place
+    if project.timeline.recording is not None:
+        project.timeline.recording.place = place
 
 
 @with_project
@@ -102,13 +102,13 @@ def stop_recording(session: Session, project: Project, *, has_moved: bool = True
 
     A recording without a pointer move is kept if the body moved under the pointer.
     """
-    take = project.recording
+    take = project.timeline.recording
     if take is None or take.is_over:
         return
     if session.tools.active is take.gesture:
         session.tools.end()
     take.is_over, take.has_moved = True, has_moved
-    project.timeline.put_playhead(replace(take.playhead, since=None, speed=take.speed))
+    project.timeline.stop_recording()
     if take.layer == project.selection.active:
         project.selection.select_track(project.layer, take.handle)
         project.timeline.show_lanes(take.layer)
@@ -118,7 +118,7 @@ def accept_recording(session: Session) -> None:
     """Keep the recorded keys."""
     stop_recording(session)
     if session.project is not None:
-        session.project.recording = None
+        session.project.timeline.forget_recording()
 
 
 @named_action(
@@ -126,18 +126,18 @@ def accept_recording(session: Session) -> None:
     _("Discard recording"),
     "Escape",
     why_disabled=unless(
-        lambda session, project: session.tools.mode == "record" or project.recording, IDLE
+        lambda session, project: session.tools.mode == "record" or project.timeline.recording, IDLE
     ),
 )
 @with_project
 def discard_recording(session: Session, project: Project) -> None:
     """Undo the recording, or disarm recording."""
-    take = project.recording
+    take = project.timeline.recording
     session.tools.leave("record")
     if take is not None:
         stop_recording(session)
         editing.revert_gesture(session, take.gesture)
-        project.recording = None
+        project.timeline.forget_recording()
 
 
 def retry_recording(session: Session) -> None:
@@ -149,7 +149,7 @@ def retry_recording(session: Session) -> None:
 @with_project
 def smooth_recording(_: Session, project: Project, smoothing: float) -> None:
     """Smooth the recorded motion, from 0 to 1."""
-    take = project.recording
+    take = project.timeline.recording
     if take is not None and take.after is not None:
         take.smoothing = smoothing
         _write(project, take)
@@ -157,12 +157,12 @@ def smooth_recording(_: Session, project: Project, smoothing: float) -> None:
 
 def update_track_drags(session: Session, project: Project) -> None:
     """Advance track drags and the recording; once a frame."""
-    if not (project.track_drags or project.recording):
+    if not (project.track_drags or project.timeline.recording):
         return
     active, runtime = project.selection.active, project.layer_runtime
     runtime.corrected = reuse_corrections(project.document, active, runtime.corrected)
     commit_track_drags(session, project)
-    take = project.recording
+    take = project.timeline.recording
     if take is None:
         return
     is_here = take.layer == active and take.handle in [h.id for h in project.layer.handles]

@@ -56,8 +56,8 @@ def draw_export_preview(
             "Orange: where the motion reaches."
         )
     )
-    is_known = project.extent.follows(extent_key(project.document))
-    if not is_known and not project.extent.has_failed(extent_key(project.document)):
+    is_known = project.measured.extent.follows(extent_key(project.document))
+    if not is_known and not project.measured.extent.has_failed(extent_key(project.document)):
         note = MEASURES
     else:
         note = LEAVES if not frame.contains(motion, slack=1.0) else KEEPS

@@ -209,7 +209,7 @@ def _state(session: Session, look: Look, project: Project) -> list[Action]:
         hint, keys = _("Show the posed drawing"), shown_keys(move_tool.return_to_posing)
         if text_button(_("Back to posing") + "###done", FILL, hint, keys):
             actions.append(do(cut_out_editing.toggle_cut_tool, None))
-    if project.layer.is_stale and project.layer is project.unbuildable:
+    if project.layer.is_stale and project.layer is project.layer_setup.unbuildable:
         small_text(
             look,
             _(

@@ -41,7 +41,7 @@ def draw_domain_panel(session: Session, look: Look, project: Project) -> list[Ac
     _facts(look, project)
     heading(look, _("Rebuild"))
     layer = project.layer
-    draft = project.meshing or layer.meshing
+    draft = project.layer_setup.meshing or layer.meshing
     chosen = _settings(look, draft)
     if chosen != draft:
         actions.append(do(viewing.preview_meshing, chosen))

@@ -46,7 +46,7 @@ def add_track_key_gizmos(
 
 def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Action]:
     """Draw the bar of a recorded drag, until the person keeps or discards it."""
-    take = project.recording
+    take = project.timeline.recording
     if take is None or not take.is_over:
         return []
     actions: list[Action] = []

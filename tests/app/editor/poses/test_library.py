@@ -85,9 +85,9 @@ def test_names_are_not_given_twice(session):
 def test_picked_pose_is_that_of_one_layer_when_names_are_alike(session):
     project = session.project
     keep(session, 6)
-    first, name = project.picked_pose
+    first, name = project.pose_edits.picked_pose
     editing.edit_document(session, layer_commands.duplicate_layer(first))
     second = project.document.layers[-1].id
     assert project.document.layer(second).library[0].name == name
     library.apply_library_pose(session, name, second)
-    assert project.picked_pose == (second, name)
+    assert project.pose_edits.picked_pose == (second, name)

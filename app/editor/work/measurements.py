@@ -1,0 +1,30 @@
+"""What is measured of the present document, on the worker."""
+
+from dataclasses import dataclass, field
+
+from app.document import Clip
+from app.editor.work.derived import Derived
+from app.editor.work.revised import Revised
+from app.motion import BoundingBox, MotionPaths, ParentTransforms
+from app.reports import Curves
+
+EXTENTS = 32  # extents of the motion that are remembered for undo and redo
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Measurements(Revised):
+    """Derived values of a project; an old value stays while a new one is computed."""
+
+    # Distortion over time, of the active layer and of the compared method.
+    curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
+    comparison_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
+    # Motion paths of the active layer's handles, computed while they are shown.
+    paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
+    # Of attached layers; `Project.current_parent_transforms` has those of the present document.
+    parent_transforms: Derived[tuple[object, ...], ParentTransforms | None] = field(
+        default_factory=lambda: Derived(None)
+    )
+    # Extent of the motion; measured first if export settings are shown, else last.
+    extent: Derived[tuple[object, ...], BoundingBox | None] = field(
+        default_factory=lambda: Derived(None, remembers=EXTENTS)
+    )

@@ -1,0 +1,61 @@
+"""What repeated edits of poses remember: the last flip, a blend, and the picked library pose."""
+
+from dataclasses import dataclass, replace
+
+from app.document import Keyframe, Pose
+from app.editor.work.revised import Revised
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LastFlip:
+    """The last flip.
+
+    `keys` are the copied keys; `poses` are the flipped poses at the layer's `frames`.
+    """
+
+    layer: int
+    keys: tuple[Keyframe, ...]
+    frames: frozenset[int]
+    poses: tuple[Pose, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class BlendPreview:
+    """A library pose that is blended into the pose at a frame.
+
+    `share` is from 0 to 1. Blends of one gesture are one undo step.
+    """
+
+    name: str
+    owner: int
+    gesture: object
+    share: float = 0.0
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class PoseEdits(Revised):
+    """The memory of flips and of the pose library."""
+
+    last_flip: LastFlip | None = None
+    blend_preview: BlendPreview | None = None
+    picked_pose: tuple[int, str] | None = None  # layer id, and name in its library
+
+    def note_flip(self, flip: LastFlip) -> None:
+        self.last_flip = flip
+
+    def pick(self, layer: int, name: str) -> None:
+        """Pick a pose of a layer's library."""
+        self.picked_pose = layer, name
+
+    def blend(self, name: str, owner: int, share: float) -> BlendPreview:
+        """Begin to blend a library pose, or go on with it, and return the blend."""
+        begun = self.blend_preview
+        if begun is None or (begun.name, begun.owner) != (name, owner):
+            begun = BlendPreview(name=name, owner=owner, gesture=object())
+        self.blend_preview = replace(begun, share=share)
+        return self.blend_preview
+
+    def end_blend(self) -> BlendPreview | None:
+        """End the blend, and return it."""
+        blend, self.blend_preview = self.blend_preview, None
+        return blend
