@@ -211,8 +211,10 @@ class Project(Revised):
     @property
     def drag(self) -> DragSession | None:
         """The unfinished drag of a pose."""
-        drags = (change for change in self.pending if isinstance(change, DragSession))
-        return next(drags, None)
+        for change in self.pending:
+            if isinstance(change, DragSession):
+                return change
+        return None
 
     @property
     def track_drags(self) -> list[TrackDrag]:

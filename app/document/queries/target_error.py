@@ -11,6 +11,7 @@ from app.document.queries.boundary_stiffness import uses_local_limits
 from app.document.queries.memo import memoized_on
 from app.texts import N_, _
 from engine.arrays import Complexes
+from engine.domain import MeshedDomain
 from engine.geometry import diameter
 from engine.maps import Bounds, distortion
 
@@ -117,12 +118,12 @@ class TargetErrors:
 
 def misses_target(layer: Layer, lag: float) -> bool:
     """Return whether a handle at this distance in pixels misses its target."""
-    return lag > _least_target_error(layer)
+    return lag > _least_target_error(layer.domain)
 
 
 @memoized_on
-def _least_target_error(layer: Layer) -> float:
-    return LEAST_TARGET_ERROR * diameter(layer.domain.outline)
+def _least_target_error(domain: MeshedDomain) -> float:
+    return LEAST_TARGET_ERROR * diameter(domain.outline)
 
 
 @memoized_on

@@ -195,7 +195,14 @@ def _follow_document(session: Session, project: Project) -> None:
     project.update_comparisons(
         session.display.compare_view.method if session.display.compare_view else None
     )
-    _pin(session, project)
+    if _is_final(session, project):
+        _pin(session, project)
+
+
+def _is_final(session: Session, project: Project) -> bool:
+    """Return whether in-betweens are worth preparing: the pose of a drag changes until it rests."""
+    drag = project.drag
+    return drag is None or drag.is_at_rest or session.display.overlays.onion
 
 
 def give_up(session: Session, kind: JobKind) -> None:
@@ -309,9 +316,7 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
     """Yield the clips that need in-betweens, the most urgent first."""
     frame, clips = playback.current_frame(session, project), _clips(project)
     clips = [(clip, runtime) for clip, runtime in clips if not runtime.store.has_failed(clip)]
-    # Until a drag rests, its pose changes once more.
-    is_final = project.drag is None or project.drag.is_at_rest or session.display.overlays.onion
-    prepares_all = is_final and _prepares_all(session, project)
+    prepares_all = _is_final(session, project) and _prepares_all(session, project)
 
     def is_wanted(clip: Clip, store: InbetweenCache) -> bool:
         return prepares_all or not store.is_exact(clip, frame)

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document import Clip, Command, Document, Easing, Layer, Pose, Target, key_commands
-from app.editor.work.derived import Derived
 from app.editor.work.pending_change import PendingChange
 from app.solving import DragSolver
 from app.texts import _
@@ -128,9 +127,7 @@ class DragSession(PendingChange):
     found: Pose | None = None
     newest: Pose | None = None
     preview: Pose | None = None
-    _previewed: Derived[tuple[Document, Pose], Document | None] = field(
-        default_factory=lambda: Derived(None)
-    )
+    _previewed: tuple[Document, Pose, Document] | None = None  # document, preview, both together
 
     @property
     def layer(self) -> int:
@@ -146,14 +143,15 @@ class DragSession(PendingChange):
         pose = self.preview
         if pose is None or not self.is_keyed:
             return document
-        if not self._previewed.follows((document, pose)):
+        known = self._previewed
+        if known is None or known[0] is not document or known[1] is not pose:
             command = (
                 key_commands.replace_key_pose(self.layer, self.frame, pose)
                 if self.frame in document.layer(self.layer).key_frames
                 else key_commands.insert_key(self.layer, self.frame, pose, easing=self.easing)
             )
-            self._previewed.set((document, pose), command(document))
-        return self._previewed.value or document
+            known = self._previewed = document, pose, command(document)
+        return known[2]
 
     def change_targets(
         self, gesture: object, change: TargetChange, hand: BoundedPull | None = None

@@ -24,6 +24,7 @@ from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu
 from app.ui.timeline.row import LayerRow, find_least_gap
 
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal: normally, and if keys are dense
+HOLLOW = 0.55  # size of the hole of a key that is not committed yet
 SMALLER = 0.7  # size of other layers' keys, relative to the active layer's
 KEY_GESTURES = _("Drag to move, {gesture} to copy, right-click for more")
 GRIP = 1.45  # half the side of a key's hit box, relative to half its diagonal
@@ -155,6 +156,10 @@ def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float
         draw_key_mark(tangent, centre, radius + 0.24 * em, colour_u32(palette.accent, 0.35))
     draw_key_mark(tangent, centre, radius + 0.12 * em, colour_u32(palette.desk))
     draw_key_mark(tangent, centre, radius, colour_u32(fill))
+    drag = bands.project.drag
+    if drag is not None and (drag.layer, drag.frame) == (row.layer.id, key.frame):
+        # Until the pose rests, the key is hollow.
+        draw_key_mark(tangent, centre, HOLLOW * radius, colour_u32(palette.desk))
     label_dragged_key(bands, pose_channel(row.layer.id), key.frame, x)
     if warns and chosen:
         draw_key_mark(tangent, centre, 0.45 * radius, colour_u32(warns))

@@ -13,6 +13,7 @@ from app.editor.parts.dialogs import Question
 from app.editor.poses import copying
 from app.storage import load_project
 from app.ui.shortcuts.table import ACTIONS
+from app.ui.timeline import keys
 
 # Which edit the document at once, by a step of their own beside the drag's.
 EDITS = (
@@ -161,3 +162,20 @@ def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
     while ready.document is not start:
         assert ready.history.undo_label is not None
         editing.undo(session)
+
+
+def test_key_is_hollow_until_its_pose_rests(window, ready, monkeypatch):
+    sizes = []
+    monkeypatch.setattr(keys, "draw_key_mark", lambda _, __, radius, ___: sizes.append(radius))
+
+    def least():
+        sizes.clear()
+        window.frames(1)
+        return min(sizes)
+
+    usual = least()
+    drag_bar(window, ready)
+    window.frames(1)
+    assert least() < 0.7 * usual
+    window.until(lambda: ready.drag is None)
+    assert least() == usual
