@@ -93,7 +93,7 @@ def test_drag_survives_each_command_that_edits_nothing(window, ready, monkeypatc
         }
         lost = [what for what, is_held in held.items() if not is_held]
         assert not lost, f"“{name}” edits, waits or leaves: it belongs to another list"
-        ready.selected_handles = frozenset({0})
+        ready.selection.handles = frozenset({0})
     assert not drag.is_at_rest
     monkeypatch.setattr(session.jobs, "deliver", deliver)
     window.until(lambda: not ready.pending)
