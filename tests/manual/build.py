@@ -1,7 +1,7 @@
 """The manual's pages: Markdown and the program's own tables in, static HTML out.
 
 In a page, *italics* are names of the program (`*File › Export…*`, `*Handle*`), and what stands in
-braces is written by it: `{key:export}` the keys of a named action, `{press:Escape}` a single key,
+braces is written by it: `{key:Export…}` the keys of a named action, `{press:Escape}` a single key,
 `{ctrl:drag}` what the pointer does with a key held. A line `{keys}`, `{commands}` or
 `{script:giraffe}` is a table, or a file of the samples. A name that is not the program's is an
 error.
@@ -113,7 +113,7 @@ class _Reader:
         self.name = path.stem
         source = path.read_text(encoding="utf-8")
         if wild := RAW_KEY.search(re.sub(r"```.*?```", "", source, flags=re.DOTALL)):
-            raise PageError(f"{wild[0]!r} is written by hand: name the action, as in {{key:save}}")
+            raise PageError(f"{wild[0]!r} is written by hand: name the action, as in {{key:Save}}")
         source = MARKED.sub(lambda found: _keys_in_html(found[1], found[2]), source)
         self.source = LINE.sub(lambda found: _table(found[1], found[2] or ""), source)
         self.markdown = MarkdownIt("commonmark", {"html": True}).enable("table")

@@ -118,7 +118,7 @@ def _tail_wag(window: Film, path: Path) -> None:
     window.put(window.point(-60 + 300j))
     with window.filmed(path):
         window.stay(20)
-        window.click(window.item("//Handle/**/###key handle"))
+        window.click(window.item("//Handle/**/###Key this handle only"))
         for frame, way in ((6, -130 + 40j), (18, 150 - 90j)):
             window.click(at(window, frame))
             window.settle()

@@ -103,7 +103,7 @@ def key_groups() -> dict[str, list[tuple[str, tuple[str, str]]]]:
     """Return all keys by the menus that their actions are in."""
     return {
         menu: [
-            (spec.label, key(spec.name)) for spec in chain(*groups) if spec.keys or spec.key_text
+            (spec.label, key(spec.label)) for spec in chain(*groups) if spec.keys or spec.key_text
         ]
         for menu, groups in MENUS.items()
     }

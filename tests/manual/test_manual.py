@@ -129,7 +129,7 @@ def test_what_the_program_has_is_written_as_it_writes_it(tmp_path):
     path = tmp_path / "page.md"
     path.write_text(
         "# Page\n\n*File › Export…*, *Show from frame 7 on*, *Export › Format*, "
-        "{key:save as}, {ctrl+shift:drag}\n",
+        "{key:Save as…}, {ctrl+shift:drag}\n",
         encoding="utf-8",
     )
     body = build.read_page(path).body
@@ -185,7 +185,7 @@ def test_each_tab_has_its_page():
     for page in PAGES.values():
         assert (build.PAGES / f"{page}.md").is_file()
     assert MENUS["Help"][0][0] is open_manual_page
-    assert names.key("manual") == ("F1", "F1")
+    assert names.key("Manual") == ("F1", "F1")
     assert open_manual_page.label == "Manual"
 
 

@@ -20,8 +20,7 @@ class ActionSpec:
     """A named action, with its label, keys and icon, and the reason why it is disabled."""
 
     action: Action
-    name: str  # unique
-    label: str  # in menus and in the sheet of shortcuts
+    label: str  # unique; in menus, in the sheet of shortcuts and in the manual
     keys: str = ""  # key chords, separated by commas; each of them runs the action
     _: KW_ONLY
     mac_keys: str = ""  # replaces `keys` on macOS, where the system reserves them
@@ -68,10 +67,10 @@ class NamedVerb(ActionSpec, Generic[P]):
 
 
 def named_action(
-    name: str, label: str, keys: str = "", **more: Any
+    label: str, keys: str = "", **more: Any
 ) -> Callable[[Callable[Concatenate[Session, P], None]], NamedVerb[P]]:
     """Make a verb an action; `more` are further fields of `ActionSpec`."""
-    return lambda verb: NamedVerb(Action(verb), name, label, keys, **more)
+    return lambda verb: NamedVerb(Action(verb), label, keys, **more)
 
 
 def unless(is_possible: Callable[[Session, Project], object], sentence: str) -> DisabledReason:

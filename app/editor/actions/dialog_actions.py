@@ -38,13 +38,13 @@ def use_own_file_browser(session: Session) -> None:
     session.dialogs.use_own_file_browser()
 
 
-@named_action("shortcuts", _("Keys and mouse"), "Shift+F1", needs_project=False)
+@named_action(_("Keys and mouse"), "Shift+F1", needs_project=False)
 def show_shortcuts(session: Session) -> None:
     session.dialogs.show(ShortcutSheet())
 
 
 REPORT = ActionSpec(
-    do(error_reports.show_kept_or_new_report), "report", _("Report a problem…"), needs_project=False
+    do(error_reports.show_kept_or_new_report), _("Report a problem…"), needs_project=False
 )
 
 
@@ -105,7 +105,6 @@ def show_import_notice(session: Session, project: Project, summary: ImportLog) -
 
 
 @named_action(
-    "import",
     _("Import log"),
     why_disabled=unless(
         lambda _, project: project.document.import_log, _("There is nothing in the import log.")

@@ -76,7 +76,6 @@ def _undo_text(session: Session, project: Project) -> str:
 
 
 @named_action(
-    "undo",
     _("Undo"),
     "Ctrl+Z",
     detail=_undo_text,
@@ -134,7 +133,6 @@ def _redo_text(_session: Session, project: Project) -> str:
 
 
 @named_action(
-    "redo",
     _("Redo"),
     "Ctrl+Shift+Z, Ctrl+Y",
     detail=_redo_text,
@@ -185,7 +183,7 @@ def _select_text(session: Session, _project: Project) -> str:
     return _("Select all keys") if session.display.is_timeline_focused else _("Select all handles")
 
 
-@named_action("select all", _("Select all"), "Ctrl+A", detail=_select_text)
+@named_action(_("Select all"), "Ctrl+A", detail=_select_text)
 @with_project
 def select_all(session: Session, project: Project) -> None:
     """Select every handle or, in the timeline, the keys of all channels."""
@@ -196,7 +194,6 @@ def select_all(session: Session, project: Project) -> None:
 
 
 @named_action(
-    "deselect",
     _("Deselect"),
     "Escape",
     why_disabled=unless(
@@ -247,7 +244,6 @@ def _has_deletable(session: Session, project: Project) -> bool:
 
 
 @named_action(
-    "delete",
     _("Delete"),
     "Delete, Backspace",
     why_disabled=unless(_has_deletable, _("Select a handle or a key first.")),

@@ -26,7 +26,6 @@ def scrub(session: Session, frame: int) -> None:
 
 
 @named_action(
-    "play",
     _("Play"),
     icon="PLAY",
     hint=_("Play or stop"),
@@ -67,19 +66,13 @@ def step_frames(session: Session, project: Project, frames: int) -> None:
 
 PREVIOUS_FRAME = ActionSpec(
     do(step_frames, -1),
-    "back",
     _("Previous frame"),
     "PageUp",
     icon="BACKWARD_STEP",
     repeats_while_held=True,
 )
 NEXT_FRAME = ActionSpec(
-    do(step_frames, 1),
-    "on",
-    _("Next frame"),
-    "PageDown",
-    icon="FORWARD_STEP",
-    repeats_while_held=True,
+    do(step_frames, 1), _("Next frame"), "PageDown", icon="FORWARD_STEP", repeats_while_held=True
 )
 
 
@@ -90,20 +83,10 @@ def go_to_key(session: Session, project: Project, direction: int) -> None:
 
 
 PREVIOUS_KEY = ActionSpec(
-    do(go_to_key, -1),
-    "previous key",
-    _("Previous key"),
-    "DownArrow",
-    icon="ANGLES_LEFT",
-    repeats_while_held=True,
+    do(go_to_key, -1), _("Previous key"), "DownArrow", icon="ANGLES_LEFT", repeats_while_held=True
 )
 NEXT_KEY = ActionSpec(
-    do(go_to_key, 1),
-    "next key",
-    _("Next key"),
-    "UpArrow",
-    icon="ANGLES_RIGHT",
-    repeats_while_held=True,
+    do(go_to_key, 1), _("Next key"), "UpArrow", icon="ANGLES_RIGHT", repeats_while_held=True
 )
 
 
@@ -137,14 +120,10 @@ def go_to_marker(session: Session, project: Project, direction: int) -> None:
 
 
 PREVIOUS_MARKER = ActionSpec(
-    do(go_to_marker, -1),
-    "previous marker",
-    _("Previous marker"),
-    "Shift+PageUp",
-    repeats_while_held=True,
+    do(go_to_marker, -1), _("Previous marker"), "Shift+PageUp", repeats_while_held=True
 )
 NEXT_MARKER = ActionSpec(
-    do(go_to_marker, 1), "next marker", _("Next marker"), "Shift+PageDown", repeats_while_held=True
+    do(go_to_marker, 1), _("Next marker"), "Shift+PageDown", repeats_while_held=True
 )
 
 
@@ -159,14 +138,14 @@ def _go_to_next(session: Session, project: Project, frames: list[int], direction
         seek(session, there)
 
 
-@named_action("start", _("First frame"), "Ctrl+PageUp", icon="BACKWARD_FAST")
+@named_action(_("First frame"), "Ctrl+PageUp", icon="BACKWARD_FAST")
 @with_project
 def go_to_start(session: Session, project: Project) -> None:
     """Go to the first frame that plays."""
     seek(session, project.document.played_frames.first)
 
 
-@named_action("end", _("Last frame"), "Ctrl+PageDown", icon="FORWARD_FAST")
+@named_action(_("Last frame"), "Ctrl+PageDown", icon="FORWARD_FAST")
 @with_project
 def go_to_end(session: Session, project: Project) -> None:
     """Go to the last frame that plays."""

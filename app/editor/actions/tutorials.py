@@ -50,7 +50,7 @@ STORIES = {
 }
 
 
-@named_action("first animation", _("Your first animation"), needs_project=False)
+@named_action(_("Your first animation"), needs_project=False)
 def begin_tutorial(session: Session) -> None:
     """Open a copy of the giraffe without motion, and guide the person to make it bow."""
 
@@ -77,7 +77,6 @@ def is_tutorial_shown(session: Session) -> bool:
 
 
 @named_action(
-    "leave guide",
     _("End guide"),
     "Escape",
     why_disabled=unless(lambda session, _: is_tutorial_shown(session), _("No guide is open.")),

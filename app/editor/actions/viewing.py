@@ -34,12 +34,10 @@ def set_view(_: Session, project: Project, camera: View | None) -> None:
     project.viewport.show(camera)
 
 
-FIT_PICTURE = ActionSpec(do(set_view, None), "fit picture", _("Fit picture"))
+FIT_PICTURE = ActionSpec(do(set_view, None), _("Fit picture"))
 
 
-@named_action(
-    "fit", _("Fit pose"), "Home", icon="EXPAND", hint=_("Show the whole shape in this frame")
-)
+@named_action(_("Fit pose"), "Home", icon="EXPAND", hint=_("Show the whole shape in this frame"))
 @with_project
 def zoom_to_pose(session: Session, project: Project) -> None:
     shown = [runtime.shown for runtime in project.layer_runtimes.values()]
@@ -50,14 +48,14 @@ def zoom_to_pose(session: Session, project: Project) -> None:
         zoom_to_box(session, reduce(BoundingBox.joined, boxes))
 
 
-@named_action("fit motion", _("Fit motion"), "Shift+Home")
+@named_action(_("Fit motion"), "Shift+Home")
 @with_project
 def zoom_to_motion(_: Session, project: Project) -> None:
     """Show the area that all layers cover in any frame, as soon as it is measured."""
     project.viewport.await_extent()
 
 
-@named_action("fit selection", _("Fit selection"), "F")
+@named_action(_("Fit selection"), "F")
 @with_project
 def zoom_to_selection(session: Session, project: Project) -> None:
     """Show the selected handles with a margin, or the whole layer."""
@@ -78,7 +76,7 @@ def zoom_to_box(session: Session, box: BoundingBox) -> None:
     set_view(session, fit_view_around(box, session.display.screen))
 
 
-@named_action("actual size", _("Actual size"), "1")
+@named_action(_("Actual size"), "1")
 @with_project
 def zoom_to_actual_size(session: Session, project: Project) -> None:
     """Show one pixel of the picture as one pixel of the screen, around the same centre."""
@@ -94,39 +92,28 @@ def toggle_overlay(session: Session, overlay: OverlayName) -> None:
     session.display.show_overlays(**{overlay: not getattr(session.display.overlays, overlay)})
 
 
-def _overlay(overlay: OverlayName, name: str, label: str, keys: str, **more: Any) -> ActionSpec:
+def _overlay(overlay: OverlayName, label: str, keys: str, **more: Any) -> ActionSpec:
     def is_shown(session: Session) -> bool:
         return bool(getattr(session.display.overlays, overlay))
 
-    return ActionSpec(do(toggle_overlay, overlay), name, label, keys, active=is_shown, **more)
+    return ActionSpec(do(toggle_overlay, overlay), label, keys, active=is_shown, **more)
 
 
 HANDLES = _overlay(
-    "handles", "handles", _("Handles"), "H", icon="CIRCLE_DOT", hint=_("Show or hide the handles")
+    "handles", _("Handles"), "H", icon="CIRCLE_DOT", hint=_("Show or hide the handles")
 )
 WIREFRAME = _overlay(
-    "wireframe", "wireframe", _("Wireframe"), "W", icon="DRAW_POLYGON", hint=_("Show the triangles")
+    "wireframe", _("Wireframe"), "W", icon="DRAW_POLYGON", hint=_("Show the triangles")
 )
 OUTLINE = _overlay(
-    "outline",
-    "outline",
-    _("Outline"),
-    "C",
-    icon="VECTOR_SQUARE",
-    hint=_("Show the edge of the shape"),
+    "outline", _("Outline"), "C", icon="VECTOR_SQUARE", hint=_("Show the edge of the shape")
 )
 ONION_SKIN = _overlay(
-    "onion",
-    "onion skin",
-    _("Onion skin"),
-    "O",
-    icon="GHOST",
-    hint=_("Show the poses before and after"),
+    "onion", _("Onion skin"), "O", icon="GHOST", hint=_("Show the poses before and after")
 )
-MIRROR_AXIS = _overlay("mirror", "mirror axis", _("Mirror axis"), "Ctrl+M", mac_keys="Ctrl+Shift+M")
+MIRROR_AXIS = _overlay("mirror", _("Mirror axis"), "Ctrl+M", mac_keys="Ctrl+Shift+M")
 MOTION_PATHS = _overlay(
     "paths",
-    "motion paths",
     _("Motion paths"),
     "J",
     icon="ROUTE",
@@ -140,7 +127,6 @@ def show_heat_map(session: Session, heat_map: HeatMap) -> None:
 
 
 @named_action(
-    "heat map",
     _("Heat map"),
     "D",
     icon="TEMPERATURE_HALF",
@@ -158,7 +144,6 @@ def show_curves(session: Session, kind: CurveKind) -> None:
 
 
 @named_action(
-    "split view",
     _("Split view"),
     "U",
     icon="TABLE_COLUMNS",
@@ -217,21 +202,19 @@ def preview_meshing(_: Session, project: Project, meshing: Meshing) -> None:
     project.layer_setup.preview_meshing(meshing)
 
 
-@named_action("theme", _("Light or dark"), needs_project=False)
+@named_action(_("Light or dark"), needs_project=False)
 def toggle_theme(session: Session) -> None:
     """Switch between the dark and the light theme."""
     theme: ThemeName = "light" if session.settings.preferences.theme == "dark" else "dark"
     session.settings.prefer(theme=theme)
 
 
-@named_action("larger", _("Larger interface"), "Ctrl+Equal, Ctrl+KeypadAdd", needs_project=False)
+@named_action(_("Larger interface"), "Ctrl+Equal, Ctrl+KeypadAdd", needs_project=False)
 def enlarge_interface(session: Session) -> None:
     _scale_interface(session, SCALE_STEP)
 
 
-@named_action(
-    "smaller", _("Smaller interface"), "Ctrl+Minus, Ctrl+KeypadSubtract", needs_project=False
-)
+@named_action(_("Smaller interface"), "Ctrl+Minus, Ctrl+KeypadSubtract", needs_project=False)
 def shrink_interface(session: Session) -> None:
     _scale_interface(session, -SCALE_STEP)
 
@@ -247,7 +230,6 @@ def focus_timeline(session: Session, in_timeline: bool) -> None:  # noqa: FBT001
 
 
 @named_action(
-    "auto-key",
     _("Auto-key"),
     "K",
     icon="KEY",

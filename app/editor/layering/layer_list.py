@@ -218,7 +218,7 @@ def ask_layer_name(_: Session, project: Project, identity: int | None) -> None:
     project.layer_list.edit_name(identity)
 
 
-@named_action("rename layer", _("Rename layer"), "F2")
+@named_action(_("Rename layer"), "F2")
 @with_project
 def rename_active_layer(session: Session, project: Project) -> None:
     session.display.focus_panel("Layers")

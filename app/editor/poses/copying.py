@@ -41,7 +41,7 @@ def _copy_text(session: Session, project: Project) -> str:
     return ngettext("Copy pose", "Copy poses of {count} layers", count).format(count=count)
 
 
-@named_action("copy", _("Copy"), "Ctrl+C", detail=_copy_text)
+@named_action(_("Copy"), "Ctrl+C", detail=_copy_text)
 @with_project
 def copy_pose_or_keys(session: Session, project: Project) -> None:
     """Copy the pose at the playhead or, in the timeline, the selected keys.
@@ -60,7 +60,6 @@ def copy_pose_or_keys(session: Session, project: Project) -> None:
 
 
 @named_action(
-    "copy all",
     _("Copy poses of all layers"),
     "Ctrl+Alt+C",
     why_disabled=unless(

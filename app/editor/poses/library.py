@@ -21,9 +21,7 @@ from app.texts import _
 KEEPING = JobKind(_("Saving a pose"), _("The pose could not be keyed"), "hand")
 
 
-@named_action(
-    "keep pose", _("Save pose"), "Shift+K", icon="PLUS", hint=_("Add this pose to the library")
-)
+@named_action(_("Save pose"), "Shift+K", icon="PLUS", hint=_("Add this pose to the library"))
 @with_project
 def save_pose_to_library(session: Session, project: Project) -> None:
     """Save the pose at the playhead to the library."""

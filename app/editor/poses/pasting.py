@@ -76,10 +76,9 @@ def _paste_text(session: Session, project: Project, way: PasteMode) -> str:
     return "".join(onto_layer.format(layer=layer.name) for layer in others)
 
 
-def _paste_action(way: PasteMode, name: str, label: str, keys: str, **more: Any) -> ActionSpec:
+def _paste_action(way: PasteMode, label: str, keys: str, **more: Any) -> ActionSpec:
     return ActionSpec(
         do(paste_copied, way),
-        name,
         label,
         keys,
         detail=partial(_paste_text, way=way),
@@ -88,10 +87,9 @@ def _paste_action(way: PasteMode, name: str, label: str, keys: str, **more: Any)
     )
 
 
-PASTE = _paste_action("as it is", "paste", _("Paste"), "Ctrl+V")
+PASTE = _paste_action("as it is", _("Paste"), "Ctrl+V")
 PASTE_FLIPPED = _paste_action(
     "flipped",
-    "paste flipped",
     _("Paste flipped"),
     "Ctrl+Shift+V",
     icon="PASTE",
@@ -99,7 +97,6 @@ PASTE_FLIPPED = _paste_action(
 )
 PASTE_SWAPPED = _paste_action(
     "swapped",
-    "paste swapped",
     _("Paste swapped"),
     "Ctrl+Shift+X",
     icon="RIGHT_LEFT",

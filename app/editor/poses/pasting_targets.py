@@ -35,7 +35,6 @@ def paste_on_selected_disabled_reason(
 
 
 @named_action(
-    "paste on selected",
     _("Paste on selected handles"),
     "Ctrl+Alt+V",
     why_disabled=partial(paste_on_selected_disabled_reason, way="as it is"),
@@ -52,7 +51,6 @@ def paste_on_selected(session: Session, project: Project, way: PasteMode = "as i
 
 FLIP_ON_SELECTED = ActionSpec(
     do(paste_on_selected, "flipped"),
-    "flip on selected",
     _("Paste flipped on selected"),
     "Ctrl+Alt+Shift+V",
     why_disabled=partial(paste_on_selected_disabled_reason, way="flipped"),

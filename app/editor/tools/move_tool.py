@@ -62,7 +62,6 @@ class MoveTool(PoseTool):
 
 
 @named_action(
-    "move",
     _("Move whole drawing"),
     "V",
     icon="UP_DOWN_LEFT_RIGHT",
@@ -76,7 +75,6 @@ def toggle_move_tool(session: Session) -> None:
 
 
 @named_action(
-    "pose",
     _("Back to posing"),
     "Escape",
     why_disabled=unless(

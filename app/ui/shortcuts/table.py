@@ -105,7 +105,7 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
         ),
     ),
 }
-ACTIONS = {spec.name: spec for groups in MENUS.values() for group in groups for spec in group}
+ACTIONS = {spec.label: spec for groups in MENUS.values() for group in groups for spec in group}
 # Esc ends the first of these that is active.
 ENDED_BY_ESC = (
     move_tool.return_to_posing,

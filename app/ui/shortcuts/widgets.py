@@ -24,7 +24,7 @@ def draw_action_text_button(session: Session, spec: ActionSpec, width: float) ->
     slot = imgui.Col_.button_active if is_active else imgui.Col_.button
     with imgui_ctx.push_style_color(imgui.Col_.button, imgui.get_style_color_vec4(slot)):
         is_pressed = text_button(
-            f"{icon_glyph(spec.icon)}  {spec.label}###{spec.name}",
+            f"{icon_glyph(spec.icon)}  {spec.label}###{spec.label}",
             width,
             spec.hint or spec.label,
             shown_keys(spec),
@@ -58,5 +58,5 @@ def draw_action_button(
         active=spec.is_active(session),
         reason=reason,
     )
-    look.note_place(spec.name)
+    look.note_place(spec.label)
     return [spec.action] if is_pressed else []

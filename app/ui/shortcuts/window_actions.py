@@ -25,7 +25,7 @@ PAGES = {
 }
 
 
-@named_action("manual", _("Manual"), "F1", needs_project=False)
+@named_action(_("Manual"), "F1", needs_project=False)
 def open_manual_page(session: Session) -> None:
     """Open the manual at the page of the active tool, or else of the front tab."""
     dialog_actions.open_manual(session, find_manual_page(session))
@@ -49,13 +49,13 @@ def find_manual_page(session: Session) -> str:
     return next((page for page, is_so in tools.items() if is_so), next(tabs, START))
 
 
-@named_action("export", _("Export…"), "Ctrl+E")
+@named_action(_("Export…"), "Ctrl+E")
 def show_export(session: Session) -> None:
     """Show the export panel. If it is in front already, ask for the file and begin."""
     if bring_to_front("Export"):
         export_settings.ask_destination_and_export(session)
 
 
-@named_action("reset layout", _("Reset layout"), needs_project=False)
+@named_action(_("Reset layout"), needs_project=False)
 def reset_layout(_session: Session) -> None:
     hello_imgui.get_runner_params().docking_params.layout_reset = True

@@ -18,21 +18,59 @@ from app.ui.style import widgets as style_widgets
 
 SENTENCE = re.compile(r"[A-Z“][^.]*\.( [A-Z“][^.]*\.)*")
 WITHOUT_PROJECT = {
-    *("open", "unsaved work", "quit", "theme", "larger", "smaller", "reset layout", "manual"),
-    *("shortcuts", "first animation", "report"),
+    *(
+        "Open…",
+        "Unsaved work…",
+        "Quit",
+        "Light or dark",
+        "Larger interface",
+        "Smaller interface",
+        "Reset layout",
+        "Manual",
+    ),
+    *("Keys and mouse", "Your first animation", "Report a problem…"),
 }
 DISABLED = {  # while two handles of a bar with two keys are selected
-    *("redo", "copy all", "paste", "paste flipped", "paste swapped", "paste on selected"),
-    *("flip on selected", "smaller brush", "larger brush", "pose", "ungroup", "mirror joints"),
-    *("find joints", "no motion", "look through", "record nothing", "preview none"),
-    *("repeats into keys", "repeat no more", "leave guide", "import"),
+    *(
+        "Redo",
+        "Copy poses of all layers",
+        "Paste",
+        "Paste flipped",
+        "Paste swapped",
+        "Paste on selected handles",
+    ),
+    *(
+        "Paste flipped on selected",
+        "Smaller brush",
+        "Larger brush",
+        "Back to posing",
+        "Ungroup",
+        "Mirror joints",
+    ),
+    *(
+        "Detect joints",
+        "Cancel motion preset",
+        "Look through the camera",
+        "Discard recording",
+        "Play all frames",
+    ),
+    *("Bake repeats", "Stop repeating", "End guide", "Import log"),
 }
 HANDLES = {
-    *("deselect", "delete", "pin here", "lock", "key handle", "bone between", "group", "mirror"),
-    "mirrored",
+    *(
+        "Deselect",
+        "Delete",
+        "Pin here",
+        "Lock",
+        "Key this handle only",
+        "Add bone",
+        "Group",
+        "Mirror",
+    ),
+    "Select partners",
 }
-PASTES = {"paste", "paste flipped", "paste on selected", "flip on selected"}
-BRUSH = {"smaller brush", "larger brush", "pose"}
+PASTES = {"Paste", "Paste flipped", "Paste on selected handles", "Paste flipped on selected"}
+BRUSH = {"Smaller brush", "Larger brush", "Back to posing"}
 
 
 def drag_handle(session):
@@ -45,13 +83,17 @@ STATES = {
     "selected": (lambda _: None, set(), set()),
     "deselected": (editing.deselect_all, set(), HANDLES),
     "playing": (playback.toggle_play, set(), set()),
-    "dragging": (drag_handle, set(), {"bone between", "group"}),
-    "moving": (move_tool.toggle_move_tool, {"pose"}, set()),
-    "cutting out": (cut_out_editing.toggle_cut_brush, BRUSH, {"record"}),
+    "dragging": (drag_handle, set(), {"Add bone", "Group"}),
+    "moving": (move_tool.toggle_move_tool, {"Back to posing"}, set()),
+    "cutting out": (cut_out_editing.toggle_cut_brush, BRUSH, {"Record drag"}),
     "making stiff": (stiffness_editing.MAKE_STIFF.action.apply, BRUSH, set()),
-    "drawing bones": (stiffness_editing.DRAW_BONES.action.apply, {"pose"}, set()),
-    "setting joints": (preset_setup.begin_motion_setup, {"pose", "find joints"}, HANDLES),
-    "recording": (recording.toggle_recording_armed, {"record nothing"}, set()),
+    "drawing bones": (stiffness_editing.DRAW_BONES.action.apply, {"Back to posing"}, set()),
+    "setting joints": (
+        preset_setup.begin_motion_setup,
+        {"Back to posing", "Detect joints"},
+        HANDLES,
+    ),
+    "recording": (recording.toggle_recording_armed, {"Discard recording"}, set()),
     "copied": (copying.copy_pose_or_keys, PASTES, set()),
 }
 

@@ -17,32 +17,46 @@ from app.ui.timeline import keys
 
 # Which edit the document at once, by a step of their own beside the drag's.
 EDITS = (
-    *("keep pose", "lock", "loop", "preview start", "preview end", "marker", "key camera"),
-    *("pass", "ease", "ease in", "ease out"),
+    *(
+        "Save pose",
+        "Lock",
+        "Loop",
+        "Set preview start",
+        "Set preview end",
+        "Add marker",
+        "Key the camera",
+    ),
+    *("Next tangent mode", "Ease in and out", "Ease in", "Ease out"),
 )
 # Which wait for the pose, change it or its handles, or leave its frame or the project. All others
 # are held to edit nothing: a new one that does so, and is in no list, fails there.
 ALONE = (
-    *("save", "export again", "copy picture", "close", "quit", "undo"),
+    *("Save", "Export again", "Copy picture", "Close", "Quit", "Undo"),
     *(
-        "copy",
-        "copy all",
-        "paste",
-        "paste flipped",
-        "paste swapped",
-        "paste on selected",
-        "flip on selected",
+        "Copy",
+        "Copy poses of all layers",
+        "Paste",
+        "Paste flipped",
+        "Paste swapped",
+        "Paste on selected handles",
+        "Paste flipped on selected",
     ),
-    *("delete", "suggest handles", "pin here", "key handle", "mirror"),
-    *("start", "play", "insert key", "first animation"),
+    *("Delete", "Suggest handles", "Pin here", "Key this handle only", "Mirror"),
+    *("First frame", "Play", "Insert key", "Your first animation"),
 )
 VIEWS = [name for name in ACTIONS if name not in {*EDITS, *ALONE}]
 
 # Whose own effect is that the key has another pose, or is gone: one step back it is there.
-INSTEAD = {"paste", "paste flipped", "paste on selected", "flip on selected", "undo"}
+INSTEAD = {
+    "Paste",
+    "Paste flipped",
+    "Paste on selected handles",
+    "Paste flipped on selected",
+    "Undo",
+}
 
 # Which pull further: before anything of the drag is seen, both are one step.
-FURTHER = {"paste on selected", "flip on selected"}
+FURTHER = {"Paste on selected handles", "Paste flipped on selected"}
 
 
 @pytest.fixture
@@ -151,9 +165,9 @@ def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
     )
     playback.stop_playback(session)
     check_invariants(session)
-    if name == "save":
+    if name == "Save":
         check_at_rest(load_project(path), goal)
-    if name == "undo":
+    if name == "Undo":
         assert ready.document is start
         editing.redo(session)
     elif name in INSTEAD:

@@ -98,7 +98,7 @@ def test_suggestions_are_taken_back_after_other_steps(window, bar, play):
 
 def test_a_locked_handle_is_not_dragged_and_holds_its_place(window, bar, play):
     editing.select_handles(window.session, frozenset({0}))
-    play(lambda robot: robot.item_click("**/###lock"))
+    play(lambda robot: robot.item_click("**/###Lock"))
     assert bar.layer.handle(0).locked
     playback.seek(window.session, 24)
     window.settle()
@@ -120,13 +120,13 @@ def test_a_locked_handle_is_not_dragged_and_holds_its_place(window, bar, play):
     assert lags[0] < 0.5
     assert lags[1] > 50
     play(lambda robot: robot.item_click("**/###handle 0"))
-    play(lambda robot: robot.item_click("**/###lock"))
+    play(lambda robot: robot.item_click("**/###Lock"))
     assert not bar.layer.handle(0).locked
 
 
 def test_a_group_is_taken_together(window, bar, play):
     editing.select_all(window.session)
-    play(lambda robot: robot.item_click("**/###group"))
+    play(lambda robot: robot.item_click("**/###Group"))
     assert {handle.group for handle in bar.layer.handles} == {"group 1"}
     editing.select_handles(window.session, frozenset())
     playback.seek(window.session, 24)
@@ -140,7 +140,7 @@ def test_a_group_is_taken_together(window, bar, play):
     assert bar.selection.handles == frozenset()
     click(window, moved[1])
     assert bar.selection.handles == {0, 1}
-    play(lambda robot: robot.item_click("**/###ungroup"))
+    play(lambda robot: robot.item_click("**/###Ungroup"))
     assert {handle.group for handle in bar.layer.handles} == {""}
     click(window, moved[1])
     assert bar.selection.handles == {1}
@@ -163,7 +163,7 @@ def test_pinned_handles_are_wanted_where_they_are(window, loose, play):
     assert max(layer.target_errors(layer.key(24).pose).values()) > 20
     before = places(loose)
     editing.select_all(window.session)
-    play(lambda robot: robot.item_click("**/###pin here"))
+    play(lambda robot: robot.item_click("**/###Pin here"))
     layer = loose.layer
     assert max(layer.target_errors(layer.key(24).pose).values()) < 1.0
     after = places(loose)
@@ -174,7 +174,7 @@ def test_partners_are_made_and_found_by_their_names(window, bar, play):
     remove_handles(window.session, frozenset({1}))
     editing.select_handles(window.session, frozenset({0}))
     window.frames(2)
-    play(lambda robot: robot.item_click("**/###mirror"))
+    play(lambda robot: robot.item_click("**/###Mirror"))
     one, other = bar.layer.handles
     assert (one.name, other.name) == ("handle 1.L", "handle 1.R")
     axis = bar.document.canvas[0] / 2
@@ -183,7 +183,7 @@ def test_partners_are_made_and_found_by_their_names(window, bar, play):
     assert [handle.name for handle in bar.layer.handles] == ["handle 1"], "one step"
     editing.redo(window.session)
     editing.select_handles(window.session, frozenset({one.id}))
-    play(lambda robot: robot.item_click("**/###mirrored"))
+    play(lambda robot: robot.item_click("**/###Select partners"))
     assert bar.selection.handles == {other.id}
     np.testing.assert_equal(len(bar.layer.handles), 2)
 

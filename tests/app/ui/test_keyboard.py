@@ -183,7 +183,7 @@ def test_menus_are_made_from_the_table(window):
             for spec in chain(*groups):
                 path = f"//$FOCUSED/{'###' if spec.detail else ''}{spec.label}"
                 if robot.item_exists(path):
-                    found.append(spec.name)
+                    found.append(spec.label)
             robot.popup_close_all()
 
     window.run(look)
@@ -204,7 +204,7 @@ def test_greyed_entries_tell_what_is_on_without_a_project(window):
 
     window.run(look)
     assert checked == {"Wireframe": True, "Handles": True, "Outline": False}
-    assert not ACTIONS["loop"].is_active(window.session)
+    assert not ACTIONS["Loop"].is_active(window.session)
 
 
 def test_the_layout_can_be_put_back(window):
@@ -282,7 +282,7 @@ def test_no_frame_stays_around_a_button_when_a_question_is_gone(window):
 def test_no_two_actions_have_the_same_key(is_mac):
     # Esc ends one thing after the other: cutting out, a recording, a guide, then what is
     # selected.
-    ended = {"pose", "record nothing", "leave guide", "no motion"}
+    ended = {"Back to posing", "Discard recording", "End guide", "Cancel motion preset"}
     bindings = [binding for name, binding in ACTIONS.items() if name not in ended]
     chords = [int(key) for binding in bindings for key in chords_of(binding, is_mac=is_mac)]
     assert len(set(chords)) == len(chords)
@@ -302,11 +302,11 @@ def test_no_action_has_a_key_that_macos_takes():
     }
     for name, binding in ACTIONS.items():
         assert taken.isdisjoint(chords_of(binding, is_mac=True)), name
-        assert (CTRL | int(key.q) in chords_of(binding, is_mac=True)) == (name == "quit")
+        assert (CTRL | int(key.q) in chords_of(binding, is_mac=True)) == (name == "Quit")
 
 
 def test_the_mirror_axis_has_another_key_on_macos():
-    axis = ACTIONS["mirror axis"]
+    axis = ACTIONS["Mirror axis"]
     assert [format_chord(chord, is_mac=True) for chord in chords_of(axis, is_mac=True)] == ["⇧⌘M"]
     assert [format_chord(chord, is_mac=False) for chord in chords_of(axis, is_mac=False)] == [
         "Ctrl+M"

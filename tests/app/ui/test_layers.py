@@ -1047,8 +1047,8 @@ def test_import_log_stays_in_the_panel(window, stranger):
     window.run(fold)
     window.frames(3)
     assert not project.layer_list.is_import_log_open
-    assert ACTIONS["import"].disabled_reason(window.session) is None
-    ACTIONS["import"].action.apply(window.session)
+    assert ACTIONS["Import log"].disabled_reason(window.session) is None
+    ACTIONS["Import log"].action.apply(window.session)
     assert project.layer_list.is_import_log_open
 
 
@@ -1062,7 +1062,7 @@ def test_import_log_is_saved_and_not_shown_again(window, stranger, tmp_path):
     assert not window.session.notices.toasts
     assert not project.layer_list.is_import_log_open
     window.show_tab("Handle")
-    ACTIONS["import"].action.apply(window.session)
+    ACTIONS["Import log"].action.apply(window.session)
     window.frames(3)
     assert is_in_front("Layers")
     assert project.layer_list.is_import_log_open

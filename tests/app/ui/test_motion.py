@@ -15,7 +15,6 @@ from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.project_files import saving
 from app.storage.project_file import load_project
 from app.ui.panel import is_in_front
-from app.ui.shortcuts.table import ACTIONS
 
 
 def open_child(window):
@@ -83,7 +82,7 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     before = project.document
     # Whatever tab was in front, the motion's own comes there.
     window.show_tab("Handle")
-    entry = f"//##MainMenuBar/Motion/{ACTIONS['give motion'].label}"
+    entry = f"//##MainMenuBar/Motion/Apply motion preset…"
     window.run(lambda robot: robot.menu_click(entry))
     window.frames(4)
     assert is_in_front("Motion")

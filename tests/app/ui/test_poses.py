@@ -249,7 +249,7 @@ def test_the_axis_is_entered_shown_and_put_back(window, project):
     assert flipping.is_mirror_axis_shown(window.session, window.session.project)
     window.run(lambda robot: robot.item_click("//###Poses/Middle"))
     assert project.layer.mirror is None
-    press(window, chords_of(ACTIONS["mirror axis"])[0])
+    press(window, chords_of(ACTIONS["Mirror axis"])[0])
     assert not flipping.is_mirror_axis_shown(window.session, window.session.project)
 
 

@@ -130,8 +130,8 @@ CHEAP = (
     (enclosure, "MARGINS", {"coarse": 0.03, "normal": 0.025, "fine": 0.02}),
 )
 # What ends the project is left out; what asks first is answered by Escape.
-LEAVING = {"close", "quit"}
-NAMED = [name for name in ACTIONS if name not in {*LEAVING, "manual", "first animation"}]
+LEAVING = {"Close", "Quit"}
+NAMED = [name for name in ACTIONS if name not in {*LEAVING, "Manual", "Your first animation"}]
 BOUND = [
     key for name, binding in ACTIONS.items() if name not in LEAVING for key in chords_of(binding)
 ]

@@ -138,14 +138,14 @@ def test_a_handle_is_keyed_alone_by_one_click(window, bent, press):
     before, there = bent.document, place_of(bent, RIGHT, 12)
     window.act(playback.seek, 12)
     window.act(editing.select_handles, frozenset({RIGHT}))
-    press("###key handle")
+    press("###Key this handle only")
     track = bent.layer.track_of(RIGHT)
     assert [(key.frame, key.place) for key in track.keys] == [(12, 0)]
     assert bent.selected_track == RIGHT
     assert bent.layer.keys == before.layers[0].keys
     assert abs(place_of(bent, RIGHT, 12) - there) < 1e-6, "nothing moves"
     # Once more at the same frame there is nothing to do, and at another one there is.
-    press("###key handle")
+    press("###Key this handle only")
     window.act(playback.seek, 18)
     window.run(lambda robot: robot.key_press(int(window.Key.mod_shift) | int(window.Key.i)))
     assert frames_of(bent) == (12, 18)

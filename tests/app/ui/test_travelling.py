@@ -191,7 +191,7 @@ def test_pairs_are_edited_where_poses_are_flipped(window, project):
     assert project.document.pairs == (("L", "R"), ("one", "two"))
     press(window, COPY_ALL)
     go(window, 12)
-    window.run(lambda robot: (robot.set_ref("###Poses"), robot.item_click("**/###paste swapped")))
+    window.run(lambda robot: (robot.set_ref("###Poses"), robot.item_click("**/###Paste swapped")))
     window.settle()
     near = ways(window, "one", 0)
     np.testing.assert_allclose(ways(window, "two", 12), near, rtol=0, atol=1e-6)

@@ -17,7 +17,7 @@ TABS = ("Handle", "Layers", "Poses", "Motion", "Deform", "Material", "Mesh", "Ex
 DRAWN = 3  # verbs of each document after which the window is drawn
 SEEDS = (*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 16)))
 EACH = 4  # documents of a seed
-CLOSES = {"close", "quit"}
+CLOSES = {"Close", "Quit"}
 
 
 @pytest.fixture

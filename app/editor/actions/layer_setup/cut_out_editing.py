@@ -46,7 +46,7 @@ def toggle_cut_tool(session: Session, tool: CutTool | None) -> None:
             session.display.focus_panel(PANEL)
 
 
-@named_action("cut out", _("Cut-out brush"), "X", active=lambda session: session.tools.is_cutting)
+@named_action(_("Cut-out brush"), "X", active=lambda session: session.tools.is_cutting)
 def toggle_cut_brush(session: Session) -> None:
     """Select the brush that removes; if a brush is selected, swap keep and remove."""
     toggle_cut_tool(session, "keep" if session.tools.mode == "remove" else "remove")
@@ -58,25 +58,13 @@ UNLESS_BRUSH = unless(
 )
 
 
-@named_action(
-    "larger brush",
-    _("Larger brush"),
-    "RightBracket",
-    why_disabled=UNLESS_BRUSH,
-    repeats_while_held=True,
-)
+@named_action(_("Larger brush"), "RightBracket", why_disabled=UNLESS_BRUSH, repeats_while_held=True)
 @with_project
 def enlarge_brush(session: Session, project: Project) -> None:
     set_brush_radius(session, brush_radius(project) * BRUSH_STEP)
 
 
-@named_action(
-    "smaller brush",
-    _("Smaller brush"),
-    "LeftBracket",
-    why_disabled=UNLESS_BRUSH,
-    repeats_while_held=True,
-)
+@named_action(_("Smaller brush"), "LeftBracket", why_disabled=UNLESS_BRUSH, repeats_while_held=True)
 @with_project
 def shrink_brush(session: Session, project: Project) -> None:
     set_brush_radius(session, brush_radius(project) / BRUSH_STEP)

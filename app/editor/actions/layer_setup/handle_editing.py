@@ -20,7 +20,6 @@ from app.texts import _
 
 
 @named_action(
-    "mirrored",
     _("Select partners"),
     "Shift+M",
     icon="RIGHT_LEFT",
@@ -50,7 +49,6 @@ def _are_all_locked(session: Session) -> bool:
 
 
 @named_action(
-    "lock",
     _("Lock"),
     "Shift+L",
     icon="LOCK",
@@ -70,7 +68,6 @@ def toggle_handles_locked(session: Session, project: Project) -> None:
 
 
 @named_action(
-    "group",
     _("Group"),
     "Ctrl+G",
     icon="OBJECT_GROUP",
@@ -89,7 +86,6 @@ def group_handles(session: Session, project: Project) -> None:
 
 
 @named_action(
-    "ungroup",
     _("Ungroup"),
     "Ctrl+Shift+G",
     icon="OBJECT_UNGROUP",

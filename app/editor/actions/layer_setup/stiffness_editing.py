@@ -43,7 +43,6 @@ def toggle_stiffness_tool(session: Session, project: Project, tool: StiffnessToo
 
 MAKE_STIFF = ActionSpec(
     do(toggle_stiffness_tool, "stiff"),
-    "stiffen",
     _("Make parts stiff"),
     "G",
     icon="CUBE",
@@ -52,7 +51,6 @@ MAKE_STIFF = ActionSpec(
 )
 DRAW_BONES = ActionSpec(
     do(toggle_stiffness_tool, "bone"),
-    "bone",
     _("Draw bones"),
     "Shift+B",
     icon="BONE",
@@ -123,7 +121,6 @@ def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
 
 
 @named_action(
-    "bone between",
     _("Add bone"),
     why_disabled=unless(
         lambda _, project: len(project.selection.handles) == 2, _("Select two handles first.")

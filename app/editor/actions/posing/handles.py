@@ -57,7 +57,6 @@ def remove_handles(
 
 
 @named_action(
-    "suggest handles",
     _("Suggest handles"),
     icon="WAND_MAGIC_SPARKLES",
     hint=_("Add named handles on body and head, and at tips and joints of limbs"),
@@ -110,7 +109,6 @@ def _take_suggestions_back(
 
 
 @named_action(
-    "mirror",
     _("Mirror"),
     icon="LEFT_RIGHT",
     hint=_("Add partners on the other side, named .L and .R or left and right"),

@@ -94,7 +94,6 @@ def set_targets(session: Session, targets: Mapping[int, Target]) -> None:
 
 
 @named_action(
-    "pin here",
     _("Pin here"),
     "P",
     icon="THUMBTACK",

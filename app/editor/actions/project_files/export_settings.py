@@ -41,7 +41,7 @@ def start_export_at(session: Session, out: Path) -> None:
     start_export(session, out)
 
 
-@named_action("export again", _("Export again"), "Ctrl+Shift+E")
+@named_action(_("Export again"), "Ctrl+Shift+E")
 @with_project
 def repeat_export(session: Session, project: Project) -> None:
     """Export to the chosen or last destination; ask if there is neither."""

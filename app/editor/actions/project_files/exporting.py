@@ -93,7 +93,7 @@ def _begin(session: Session, project: Project, request: ExportRequest) -> None:
     _prepare(session, project, request, begun)
 
 
-@named_action("copy picture", _("Copy picture"), "Ctrl+Shift+C")
+@named_action(_("Copy picture"), "Ctrl+Shift+C")
 @with_project
 def copy_picture(session: Session, project: Project) -> None:
     """Copy the picture of the shown frame to the clipboard, drawn as an export draws it."""

@@ -91,7 +91,7 @@ class OpenedFile(NamedTuple):
     drawings: tuple[Path, ...] = ()
 
 
-@named_action("open", _("Open…"), "Ctrl+O", needs_project=False)
+@named_action(_("Open…"), "Ctrl+O", needs_project=False)
 def ask_file_to_open(session: Session) -> None:
     session.ask_file(_("Open image or project"), OPENABLE, lambda path: do(open_file, path))
 

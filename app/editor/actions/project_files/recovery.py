@@ -32,7 +32,7 @@ def ask_recovery(session: Session) -> None:
         session.dialogs.show(RecoveryDialog(candidates))
 
 
-@named_action("unsaved work", _("Unsaved work…"), needs_project=False)
+@named_action(_("Unsaved work…"), needs_project=False)
 def show_recovery(session: Session) -> None:
     """Show the unsaved work of earlier sessions, or a notice that there is none."""
     ask_recovery(session)

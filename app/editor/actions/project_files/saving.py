@@ -31,13 +31,13 @@ NOT_FINISHED = N_("Not finished: {tasks}.")
 SAVING = JobKind(_("Saving"), _("The project was not saved"), "keep")
 
 
-@named_action("save", _("Save"), "Ctrl+S")
+@named_action(_("Save"), "Ctrl+S")
 def save(session: Session) -> None:
     """Save the project to its own file; ask for a file if it is new or recovered."""
     save_then(session, None)
 
 
-@named_action("save as", _("Save as…"), "Ctrl+Shift+S")
+@named_action(_("Save as…"), "Ctrl+Shift+S")
 def save_as(session: Session) -> None:
     _ask_where(session, None)
 
@@ -238,7 +238,7 @@ def key_and_save(session: Session, project: Project, then: Action) -> None:
     save_then(session, then)
 
 
-@named_action("close", _("Close"), "Ctrl+W")
+@named_action(_("Close"), "Ctrl+W")
 def close_project(session: Session) -> None:
     """Go back to the welcome view; ask first if there are changes."""
     confirm_unsaved(session, do(discard_project))
@@ -250,7 +250,7 @@ def discard_project(session: Session) -> None:
     session.settings.autosave.remove()
 
 
-@named_action("quit", _("Quit"), "Ctrl+Q", needs_project=False)
+@named_action(_("Quit"), "Ctrl+Q", needs_project=False)
 def request_quit(session: Session) -> None:
     """Close the window; ask first if an export runs or there are changes."""
     exporting.confirm_ending_export(session, do(confirm_unsaved, do(close_window)))

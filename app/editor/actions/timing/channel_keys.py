@@ -59,7 +59,6 @@ def delete_channel_key(session: Session, project: Project, channel: Channel[Any]
 
 
 @named_action(
-    "key camera",
     _("Key the camera"),
     icon="VIDEO",
     hint=_("Key the camera at this frame: it shows what the viewport shows now"),
@@ -83,7 +82,6 @@ def key_camera(session: Session, project: Project) -> None:
 
 
 @named_action(
-    "look through",
     _("Look through the camera"),
     hint=_("Show the camera's picture in each frame, until you move the view"),
     why_disabled=unless(

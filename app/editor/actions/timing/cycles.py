@@ -46,7 +46,6 @@ def _repeat_text(_session: Session, project: Project) -> str:
 
 
 @named_action(
-    "repeat",
     _("Repeat"),
     detail=_repeat_text,
     why_disabled=unless(_repeat_text, _("Set a second key first. Keys are repeated.")),
@@ -67,14 +66,14 @@ def create_cycle(session: Session, project: Project) -> None:
 UNLESS_CYCLE = unless(cycle_at_playhead, _("Move the playhead to frames that repeat first."))
 
 
-@named_action("repeat no more", _("Stop repeating"), why_disabled=UNLESS_CYCLE)
+@named_action(_("Stop repeating"), why_disabled=UNLESS_CYCLE)
 @with_project
 def end_cycle(session: Session, project: Project, frame: int | None = None) -> None:
     """Remove the repeats of the cycle at a frame, by default the present one."""
     _change(session, project, frame, cycle_commands.delete_cycle)
 
 
-@named_action("repeats into keys", _("Bake repeats"), why_disabled=UNLESS_CYCLE)
+@named_action(_("Bake repeats"), why_disabled=UNLESS_CYCLE)
 @with_project
 def bake_cycle(session: Session, project: Project, frame: int | None = None) -> None:
     """Bake the repeats at a frame into keys; by default the present frame."""

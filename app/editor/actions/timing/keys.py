@@ -55,9 +55,7 @@ def edit_timing(
         project.timeline.seek(frame, session.clock())
 
 
-@named_action(
-    "insert key", _("Insert key"), "I", icon="DIAMOND", hint=_("Set a key with the current pose")
-)
+@named_action(_("Insert key"), "I", icon="DIAMOND", hint=_("Set a key with the current pose"))
 @with_project
 def insert_key_in_row(session: Session, project: Project) -> None:
     """Insert a key at the present frame into the selected channel, with its present value."""
@@ -117,7 +115,7 @@ def set_revolutions(session: Session, keys: KeysByChannel, turns: int) -> None:
     editing.edit_document(session, combine_commands(_("Set turns"), commands))
 
 
-@named_action("pass", _("Next tangent mode"), "T")
+@named_action(_("Next tangent mode"), "T")
 @with_project
 def use_next_tangent_mode(session: Session, project: Project) -> None:
     """Set the next tangent mode of the selected keys, or of the key at or before the playhead."""
@@ -137,12 +135,12 @@ def ease_selected_keys(session: Session, project: Project, easing: Easing) -> No
 
 
 EASE_KEYS = tuple(
-    ActionSpec(do(ease_selected_keys, PRESETS[preset]), name, label, keys)
-    for name, label, preset, keys in (
-        ("ease", _("Ease in and out"), "in-out", "F9"),
-        ("ease in", _("Ease in"), "in", "Shift+F9"),
-        ("ease out", _("Ease out"), "out", "Ctrl+Shift+F9"),
-        ("ease not", _("Linear"), "linear", "Alt+F9"),
+    ActionSpec(do(ease_selected_keys, PRESETS[preset]), label, keys)
+    for label, preset, keys in (
+        (_("Ease in and out"), "in-out", "F9"),
+        (_("Ease in"), "in", "Shift+F9"),
+        (_("Ease out"), "out", "Ctrl+Shift+F9"),
+        (_("Linear"), "linear", "Alt+F9"),
     )
 )
 
@@ -198,7 +196,6 @@ def _rearrange(session: Session, project: Project, command: Command) -> None:
 
 
 @named_action(
-    "loop",
     _("Loop"),
     "L",
     icon="REPEAT",
@@ -224,7 +221,6 @@ def set_last_frame(session: Session, project: Project, last: int) -> None:
 
 
 @named_action(
-    "preview none",
     _("Play all frames"),
     "Alt+P",
     why_disabled=unless(
@@ -236,14 +232,14 @@ def clear_preview_range(session: Session) -> None:
     edit_timing(session, scene_commands.set_preview(None))
 
 
-@named_action("preview start", _("Set preview start"), "B")
+@named_action(_("Set preview start"), "B")
 @with_project
 def start_preview_at_playhead(session: Session, project: Project) -> None:
     frame = playback.current_frame(session, project)
     _set_preview(session, project, frame, max(frame, project.document.played_frames.last))
 
 
-@named_action("preview end", _("Set preview end"), "N")
+@named_action(_("Set preview end"), "N")
 @with_project
 def end_preview_at_playhead(session: Session, project: Project) -> None:
     frame = playback.current_frame(session, project)
@@ -266,7 +262,7 @@ def add_marker(session: Session, project: Project, frame: int) -> None:
         editing.edit_document(session, scene_commands.add_marker(frame))
 
 
-@named_action("marker", _("Add marker"), "M")
+@named_action(_("Add marker"), "M")
 @with_project
 def add_marker_at_playhead(session: Session, project: Project) -> None:
     add_marker(session, playback.current_frame(session, project))

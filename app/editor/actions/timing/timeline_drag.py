@@ -46,11 +46,7 @@ def set_time_range(_: Session, project: Project, strip: TimeRangeView | None) ->
 
 
 @named_action(
-    "fit time",
-    _("Fit timeline"),
-    "Ctrl+Home",
-    icon="ARROWS_LEFT_RIGHT_TO_LINE",
-    hint=_("Show all frames"),
+    _("Fit timeline"), "Ctrl+Home", icon="ARROWS_LEFT_RIGHT_TO_LINE", hint=_("Show all frames")
 )
 def fit_timeline(session: Session) -> None:
     set_time_range(session, None)

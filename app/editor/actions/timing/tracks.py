@@ -42,7 +42,6 @@ def select_channel(_: Session, project: Project, channel: Channel[Any] | None) -
 
 
 @named_action(
-    "key handle",
     _("Key this handle only"),
     "Shift+I",
     icon="KEY",

@@ -35,7 +35,6 @@ IDLE, CUTTING = _("Nothing is being recorded."), _("Stop cutting out first.")
 
 
 @named_action(
-    "record",
     _("Record drag"),
     "R",
     icon="CIRCLE",
@@ -122,7 +121,6 @@ def accept_recording(session: Session) -> None:
 
 
 @named_action(
-    "record nothing",
     _("Discard recording"),
     "Escape",
     why_disabled=unless(

@@ -73,7 +73,7 @@ def _to_step(
                 _(
                     "Click here, or press {keys}: Lissom fills in the motion between the poses."
                 ).format(keys=keys),
-                _box(places, "play"),
+                _box(places, playback.toggle_play.label),
             )
         case "export":
             return _to_export(session, screen.project, places)
@@ -125,7 +125,7 @@ def _to_pose(
             _(
                 "Auto-key is off, so this pose has no key. Press {keys} ({action}) to set a key."
             ).format(action=insert.label, keys=shown_keys(insert)),
-            _box(places, "insert key"),
+            _box(places, insert.label),
         )
     layer, handles = screen.shown.clip.layer, screen.shown.handle_positions
     if guide.handle_place is None or guide.target_place is None:

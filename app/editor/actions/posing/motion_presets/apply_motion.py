@@ -197,7 +197,6 @@ def apply_motion_at_size(
 
 
 @named_action(
-    "no motion",
     _("Cancel motion preset"),
     "Escape",
     why_disabled=unless(

@@ -95,7 +95,6 @@ def include_joint(session: Session, name: str) -> None:
 
 
 @named_action(
-    "find joints",
     _("Detect joints"),
     icon="WAND_MAGIC_SPARKLES",
     hint=_("Move all joints back to where they were detected"),
@@ -113,7 +112,6 @@ def reset_joints(session: Session) -> None:
 
 
 @named_action(
-    "mirror joints",
     _("Mirror joints"),
     icon="LEFT_RIGHT",
     hint=_("Mirror the joints of one side to the other side"),

@@ -32,7 +32,6 @@ def motion_disabled_reason(_session: Session, project: Project) -> str | None:
 
 
 @named_action(
-    "give motion",
     _("Apply motion preset…"),
     "A",
     icon="PERSON_WALKING",
