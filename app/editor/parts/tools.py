@@ -10,9 +10,9 @@ from app.editor.work.revised import Revised
 
 CutTool = Literal["keep", "remove", "knife", "pick", "holes"]
 StiffnessTool = Literal["stiff", "soft", "normal", "bone"]
-# The selected tool: pose a handle, move the whole layer, or record the next drag of a handle; cut
-# out, or change the stiffness; or place the joints of a drafted motion.
-ToolMode = Literal["pose", "move", "record"] | CutTool | StiffnessTool | MotionSetup
+# The selected tool by its name in the table of tools, such as "pose", "record" or a `CutTool`; or
+# the draft of a motion whose joints are placed.
+ToolMode = str | MotionSetup
 CUT_TOOLS: tuple[CutTool, ...] = get_args(CutTool)
 STIFFNESS_TOOLS: tuple[StiffnessTool, ...] = get_args(StiffnessTool)
 CLICK = 3.0  # screen pixels that the pointer may move during a click

@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from app.editor.parts.tools import CUT_TOOLS, STIFFNESS_TOOLS
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.tools.anchor_tool import AnchorTool
@@ -15,11 +16,8 @@ from app.editor.tools.pose_tool import PoseTool
 from app.editor.tools.rotate_tool import RotateTool
 from app.editor.tools.select_tools import PickLayerTool, SelectTool
 from app.editor.tools.tool import PointerHit, Tool
+from app.editor.work.motion_setup import MotionSetup
 
-CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (CutBrushTool, KnifeTool, CutClickTool)
-STIFFNESS_TOOLS: Final[tuple[type[Tool], ...]] = (StiffnessBrushTool, BoneTool)
-JOINT_TOOLS: Final[tuple[type[Tool], ...]] = (JointTool,)
-MOVING_TOOLS: Final[tuple[type[Tool], ...]] = (MirrorAxisTool, MoveTool, AnchorTool)
 # The first tool that takes a press gets it; hints are shown in this order.
 TOOLS: Final[tuple[type[Tool], ...]] = (
     MirrorAxisTool,
@@ -31,6 +29,12 @@ TOOLS: Final[tuple[type[Tool], ...]] = (
     AnchorTool,
     SelectTool,
 )
+# The tools of each mode; of the modes that are not listed, `TOOLS`.
+MODES: Final[dict[str, tuple[type[Tool], ...]]] = {
+    **dict.fromkeys(CUT_TOOLS, (CutBrushTool, KnifeTool, CutClickTool)),
+    **dict.fromkeys(STIFFNESS_TOOLS, (StiffnessBrushTool, BoneTool)),
+    "move": (MirrorAxisTool, MoveTool, AnchorTool),
+}
 
 
 def pointed_tool(session: Session, project: Project, spot: PointerHit) -> type[Tool] | None:
@@ -42,11 +46,6 @@ def pointed_tool(session: Session, project: Project, spot: PointerHit) -> type[T
 
 
 def tools_of(session: Session) -> tuple[type[Tool], ...]:
-    """Return the tools of the present mode: cut out, set up a motion, move, or pose."""
-    if session.tools.motion_setup is not None:
-        return JOINT_TOOLS
-    if session.tools.is_cutting:
-        return CUTTING_TOOLS
-    if session.tools.stiffness_tool is not None:
-        return STIFFNESS_TOOLS
-    return MOVING_TOOLS if session.tools.mode == "move" else TOOLS
+    """Return the tools of the present mode."""
+    mode = session.tools.mode
+    return (JointTool,) if isinstance(mode, MotionSetup) else MODES.get(mode, TOOLS)

@@ -82,7 +82,7 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     before = project.document
     # Whatever tab was in front, the motion's own comes there.
     window.show_tab("Handle")
-    entry = f"//##MainMenuBar/Motion/Apply motion preset…"
+    entry = "//##MainMenuBar/Motion/Apply motion preset…"
     window.run(lambda robot: robot.menu_click(entry))
     window.frames(4)
     assert is_in_front("Motion")

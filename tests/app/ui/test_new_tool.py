@@ -73,7 +73,8 @@ def drawn(monkeypatch, window, loose):
 
         return noted
 
-    monkeypatch.setattr(table, "TOOLS", (MeasureTool,))
+    monkeypatch.setitem(table.MODES, "measure", (MeasureTool,))
+    window.session.tools.select("measure")
     noted_shapes = note("shapes", draw, 2)
     monkeypatch.setattr(viewport, "draw_shapes", noted_shapes)
     monkeypatch.setattr("app.ui.viewport.interaction.drag.draw_shapes", noted_shapes)
@@ -99,7 +100,7 @@ def test_a_new_tool_shows_its_shapes_hint_cursor_and_badge(window, drawn):
 
     window.run(play)
     assert texts == [
-        "Drag to measure",
+        "Drag to measure, Esc goes back to posing",
         "Let go to stop measuring, Esc cancels",
     ]
     assert pictures[0] > 0
@@ -107,6 +108,9 @@ def test_a_new_tool_shows_its_shapes_hint_cursor_and_badge(window, drawn):
     assert any(text.startswith("Measuring: ") for text in drawn["texts"])
     kinds = {type(each) for each in flat(drawn["shapes"])}
     assert kinds >= {LineShape, AreaShape, KnobShape, StrokeShape, TagShape}
+    window.run(lambda robot: robot.key_press(imgui.Key.escape))
+    window.frames(2)
+    assert window.session.tools.is_posing
 
 
 def flat(groups):
