@@ -41,7 +41,7 @@ def begin_pending_change(
         Takes the error of a failure; by default it is reported.
     """
     pending = change or PendingChange(label=kind.label)
-    project.pending.append(pending)
+    project.pending.add(pending)
 
     def arrived(result: Result) -> None:
         if _end_pending_change(session, project, pending):
@@ -65,7 +65,7 @@ def _call(_: Session, done: Callable[[Result], None], result: Result) -> None:
 
 def _end_pending_change(session: Session, project: Project, change: PendingChange) -> bool:
     """Remove a pending change; return whether its result is still needed."""
-    if change not in project.pending:
+    if change not in project.pending.changes:
         return False
     project.pending.remove(change)
     return session.project is project
@@ -79,7 +79,7 @@ def is_document_idle(project: Project, *, after_saves: bool = False) -> bool:
     if project.stale_layer is not None:
         return False
 
-    return not any(change.changes or after_saves for change in project.pending)
+    return not any(change.changes or after_saves for change in project.pending.changes)
 
 
 @with_project
@@ -111,20 +111,20 @@ def run_when_idle(
     waiting = DeferredAction(
         then=then, what=what, after_saves=after_saves, until=until, position=position
     )
-    project.deferred.append(waiting)
+    project.pending.defer(waiting)
     run_deferred_actions(session)
 
 
 @with_project
 def run_deferred_actions(session: Session, project: Project) -> None:
     """Run waiting actions in order, while the document is idle or their time is up."""
-    for waiting in tuple(project.deferred):
+    for waiting in tuple(project.pending.deferred):
         is_due = session.clock() >= waiting.until
         if not (is_due or is_document_idle(project, after_saves=waiting.after_saves)):
             continue
         # The action before may have run this action as well, or closed the project.
-        if waiting in project.deferred and session.project is project:
-            project.deferred.remove(waiting)
+        if waiting in project.pending.deferred and session.project is project:
+            project.pending.drop_deferred([waiting])
             waiting.then.apply(session)
 
 
@@ -134,24 +134,24 @@ def cancel_deferred_action(project: Project) -> str | None:
     Return its label for a notice; None if there is none.
     """
     position = project.history.position
-    since = [each for each in project.deferred if each.position == position]
+    since = [each for each in project.pending.deferred if each.position == position]
     if not since:
         return None
-    project.deferred.remove(since[-1])
+    project.pending.drop_deferred(since[-1:])
     return since[-1].what
 
 
 def deferred_label(project: Project) -> str:
     """Return the label of the first waiting action; empty if there is none."""
-    if not project.deferred:
+    if not project.pending.deferred:
         return ""
     text = _("{tasks}, then: {action}")
-    return text.format(tasks=pending_label(project), action=project.deferred[0].what)
+    return text.format(tasks=pending_label(project), action=project.pending.deferred[0].what)
 
 
 def pending_label(project: Project) -> str:
     """Return the label of a pending change or save."""
-    labels = [change.label for change in project.pending]
+    labels = [change.label for change in project.pending.changes]
     if project.stale_layer is not None:
         labels.append(_("Cutting out"))
     return ", ".join(dict.fromkeys(labels))

@@ -17,7 +17,6 @@ from app.document import (
     Document,
     History,
     Layer,
-    PictureFile,
     Pose,
     PreviewPose,
     TreeRow,
@@ -36,12 +35,12 @@ from app.editor.parts.project_file import ProjectFile
 from app.editor.parts.selection import Selection
 from app.editor.parts.timeline import TimelineState
 from app.editor.parts.viewport_state import ViewportState, fit_view_around
-from app.editor.work.drag_session import DragSession, StoppedDrag
-from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime
+from app.editor.work.drag_session import DragSession
+from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime, LayerRuntimes
 from app.editor.work.layer_setup import LayerSetup
 from app.editor.work.measurements import Measurements
 from app.editor.work.motion_setup import MotionJob
-from app.editor.work.pending_change import DeferredAction, PendingChange
+from app.editor.work.pending_work import PendingWork
 from app.editor.work.pose_edits import PoseEdits
 from app.editor.work.revised import Revised
 from app.editor.work.track_drag import TrackDrag
@@ -53,7 +52,6 @@ from app.motion import (
 )
 from app.render import View
 from app.solving import KeyResolver
-from app.storage import Picture
 from engine.geometry import RigidMotion
 
 # Most bytes of intermediate values that inactive layers keep, once they have series.
@@ -70,20 +68,8 @@ class Project(Revised):
     layer_list: LayerListState = field(default_factory=LayerListState)
     viewport: ViewportState = field(default_factory=ViewportState)
     exports: ExportDestinations = field(default_factory=ExportDestinations)
-
-    layer_runtimes: dict[int, LayerRuntime]  # by layer id
-    # Decoded pictures, also of layers that undo may bring back.
-    pictures: dict[PictureFile, Picture] = field(default_factory=dict)
-    pending: list[PendingChange] = field(default_factory=list)  # pending changes of the document
-    # The inputs of the last poll for due jobs.
-    polled: tuple[object, ...] = ()
-    # The inputs of the shown frame at its last update.
-    settled: tuple[object, ...] = ()
-    deferred: list[DeferredAction] = field(default_factory=list)  # in the order of the requests
-    # The gesture of a held drag that another change of the document ended; it changes no more.
-    ended_gesture: object = None
-    stopped_drag: StoppedDrag | None = None  # to be shown in a notice
-
+    runtimes: LayerRuntimes
+    pending: PendingWork = field(default_factory=PendingWork)
     measured: Measurements = field(default_factory=Measurements)
     layer_setup: LayerSetup = field(default_factory=LayerSetup)
     pose_edits: PoseEdits = field(default_factory=PoseEdits)
@@ -154,12 +140,12 @@ class Project(Revised):
     @property
     def layer_runtime(self) -> LayerRuntime:
         """The active layer's runtime."""
-        return self.layer_runtimes[self.selection.active]
+        return self.runtimes.layers[self.selection.active]
 
     @property
     def samplers(self) -> dict[int, PoseSampler]:
         """Pose samplers of the layers, by id."""
-        samplers = {layer: runtime.store.sampler for layer, runtime in self.layer_runtimes.items()}
+        samplers = {layer: runtime.store.sampler for layer, runtime in self.runtimes.layers.items()}
         return {layer: sampler for layer, sampler in samplers.items() if sampler is not None}
 
     @property
@@ -183,7 +169,7 @@ class Project(Revised):
     def _unedited(self) -> list[tuple[Clip, LayerRuntime]]:
         return [
             (clip_of(self.document, layer), runtime)
-            for layer, runtime in self.layer_runtimes.items()
+            for layer, runtime in self.runtimes.layers.items()
             if layer != self.selection.active
         ]
 
@@ -211,7 +197,7 @@ class Project(Revised):
     @property
     def drag(self) -> DragSession | None:
         """The unfinished drag of a pose."""
-        for change in self.pending:
+        for change in self.pending.changes:
             if isinstance(change, DragSession):
                 return change
         return None
@@ -219,7 +205,7 @@ class Project(Revised):
     @property
     def track_drags(self) -> list[TrackDrag]:
         """The track drags whose keys are pending."""
-        return [change for change in self.pending if isinstance(change, TrackDrag)]
+        return [change for change in self.pending.changes if isinstance(change, TrackDrag)]
 
     @property
     def visible_drag(self) -> DragSession | None:
@@ -233,12 +219,16 @@ class Project(Revised):
     @property
     def key_resolver(self) -> KeyResolver | None:
         """Keys that are solved again, with progress."""
-        return next((change.key_resolver for change in self.pending if change.key_resolver), None)
+        return next(
+            (change.key_resolver for change in self.pending.changes if change.key_resolver), None
+        )
 
     @property
     def motion_job(self) -> MotionJob | None:
         """The pending motion of a layer."""
-        return next((change.motion_job for change in self.pending if change.motion_job), None)
+        return next(
+            (change.motion_job for change in self.pending.changes if change.motion_job), None
+        )
 
     @property
     def stale_layer(self) -> Layer | None:
@@ -291,7 +281,7 @@ class Project(Revised):
     def update_comparisons(self, method: Variant | Baseline | None) -> None:
         """Compare each layer with a method, or with none."""
         for layer in self.document.layers:
-            runtime = self.layer_runtimes[layer.id]
+            runtime = self.runtimes.layers[layer.id]
             if method is None:
                 runtime.comparison = None
                 continue

@@ -31,6 +31,7 @@ from app.editor.parts.settings import SessionSettings
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
+from app.editor.work.layer_runtime import LayerRuntimes
 from app.storage.assets import sample_images
 from app.storage.autosave import find_recoverable_files, load_recoverable_file
 from app.storage.files.atomic import PART, atomic_file, remove_abandoned_files
@@ -198,7 +199,7 @@ def _edit_on(tell: Callable[[int, float], None], folder: Path, document: Documen
     session.project = Project(
         file=ProjectFile(name="a"),
         history=History(document, saved=True),
-        layer_runtimes={},
+        runtimes=LayerRuntimes(layers={}),
         selection=Selection(active=document.layers[-1].id),
     )
     number = 0

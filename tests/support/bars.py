@@ -61,7 +61,7 @@ def take_few_corners(project: Project) -> None:
     document = project.document.with_layer(layer)
     project.history = History(document, saved=history.is_saved)
     picture = project.layer_runtime.picture
-    project.layer_runtimes[layer.id] = LayerRuntime.of(clip_of(document, layer.id), picture)
+    project.runtimes.layers[layer.id] = LayerRuntime.of(clip_of(document, layer.id), picture)
 
 
 def bend_bar(

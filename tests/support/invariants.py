@@ -27,7 +27,7 @@ def check_invariants(session: Session) -> None:
     if project is None:
         return
     document, layer = project.document, project.layer
-    assert set(project.layer_runtimes) == {each.id for each in document.layers}
+    assert set(project.runtimes.layers) == {each.id for each in document.layers}
     assert project.selection.handles <= {handle.id for handle in layer.handles}
     for channel, frames in project.selection.keys.items():
         assert frames
@@ -49,7 +49,7 @@ def check_joints(project: Project) -> None:
     """Fail where a layer is not drawn at its joint with its parent."""
     for layer in project.document.layers:
         child, joint = (
-            project.layer_runtimes[layer.id].shown,
+            project.runtimes.layers[layer.id].shown,
             project.document.attachment_at(layer, 0),
         )
         if (
@@ -59,7 +59,7 @@ def check_joints(project: Project) -> None:
             or len(layer.attachments) > 1
         ):
             continue
-        parent = project.layer_runtimes[joint.parent].shown
+        parent = project.runtimes.layers[joint.parent].shown
         if child is None or parent is None:
             continue
         pair = (child, layer), (parent, project.document.layer(joint.parent))

@@ -4,6 +4,7 @@ from app.document import Document, History, clip_of
 from app.editor import LayerRuntime, Project
 from app.editor.parts.project_file import ProjectFile
 from app.editor.parts.selection import Selection
+from app.editor.work.layer_runtime import LayerRuntimes
 from app.storage import Picture
 from engine.arrays import Bytes
 
@@ -17,6 +18,6 @@ def project_of(document: Document, pixels: Bytes, name: str) -> Project:
     return Project(
         file=ProjectFile(name=name),
         history=History(document, saved=True),
-        layer_runtimes=puppets,
+        runtimes=LayerRuntimes(layers=puppets),
         selection=Selection(active=document.layers[0].id),
     )

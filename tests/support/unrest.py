@@ -13,11 +13,15 @@ def unrest(session: Session) -> str:
     project = session.project
     if project is None:
         return "\n".join(lines)
-    lines += [f"on its way: {each.label!r} ({type(each).__name__})" for each in project.pending]
+    lines += [
+        f"on its way: {each.label!r} ({type(each).__name__})" for each in project.pending.changes
+    ]
     drag = project.drag
     if drag is not None:
         lines.append(f"drag: layer {drag.layer}, frame {drag.frame}, held {drag.is_held}")
-    lines += [f"waits until nothing is on its way: {each.what!r}" for each in project.deferred]
+    lines += [
+        f"waits until nothing is on its way: {each.what!r}" for each in project.pending.deferred
+    ]
     if project.stale_layer is not None:
         lines.append(f"waits for a mesh: {project.stale_layer.name!r}")
     lines += _shown(project)
@@ -34,7 +38,7 @@ def is_shown(session: Session) -> bool:
 
 def _shown(project: Project) -> list[str]:
     lines = []
-    for identity, puppet in project.layer_runtimes.items():
+    for identity, puppet in project.runtimes.layers.items():
         clip, shown, store = clip_of(project.document, identity), puppet.shown, puppet.store
         if shown is None:
             lines.append(f"layer {clip.layer.name!r}: nothing is shown")

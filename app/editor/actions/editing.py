@@ -105,7 +105,7 @@ def undo(session: Session, project: Project) -> None:
         return
     before, unkeyed = project.document, project.preview_pose
     if drag is not None and (is_held or drag.start is None):
-        project.ended_gesture = drag.gesture
+        project.pending.end_gesture(drag.gesture)
         drop_drag(session, project, drag)
         # Other edits of its gestures, such as a new handle.
         for gesture in (*drag.target_changes, drag.gesture):

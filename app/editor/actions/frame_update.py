@@ -87,8 +87,8 @@ def ask_for_missing(session: Session, project: Project) -> None:
     """Queue jobs for missing values."""
     inputs = _inputs(session, project)
     # Nothing is missing while the inputs are those of the last complete poll.
-    if inputs != project.polled:
-        project.polled = inputs
+    if inputs != project.pending.polled:
+        project.pending.note_poll(inputs)
         _follow_document(session, project)
         for job in due_jobs(session, project):
             if job.kind not in session.jobs.kinds:
@@ -103,9 +103,9 @@ def ask_for_missing(session: Session, project: Project) -> None:
 def settle_shown(session: Session, project: Project) -> None:
     """Update the shown frame."""
     # Unchanged inputs mean an unchanged frame. The test costs the same for any number of layers.
-    if _drawn_of(session, project) != project.settled:
+    if _drawn_of(session, project) != project.pending.settled:
         _show(session, project)
-        project.settled = _drawn_of(session, project)
+        project.pending.note_shown(_drawn_of(session, project))
     if session.clock() - project.timeline.moved_at >= STILL:
         project.timeline.note_rest()
     if project.viewport.awaits_extent:
@@ -141,7 +141,7 @@ def is_due_in_time(session: Session) -> bool:
         or session.tutorial.state is not None
         or project.layer_setup.stale is not None
         or project.timeline.moved_at > -inf
-        or bool(project.pending or project.deferred)
+        or bool(project.pending.changes or project.pending.deferred)
         or session.tools.active is not None
     )
 
@@ -173,14 +173,18 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
             session.tools.mode == "record",
         ),
         *(project.selected_track, take, take and (take.is_over, len(take.samples))),
-        *(project.unkeyed_pose, tuple(project.pending), drag and (drag.is_held, drag.preview)),
-        tuple(runtime.store for runtime in project.layer_runtimes.values()),
+        *(
+            project.unkeyed_pose,
+            tuple(project.pending.changes),
+            drag and (drag.is_held, drag.preview),
+        ),
+        tuple(runtime.store for runtime in project.runtimes.layers.values()),
     )
 
 
 def _drawn_of(session: Session, project: Project) -> tuple[object, ...]:
     """Return all values that decide the shown frame, and the shown frame itself."""
-    runtimes = project.layer_runtimes.values()
+    runtimes = project.runtimes.layers.values()
     return (
         *(_inputs(session, project), _is_moving(session, project)),
         *((each.shown, each.fine, each.corrected, each.comparison) for each in runtimes),
@@ -189,7 +193,7 @@ def _drawn_of(session: Session, project: Project) -> tuple[object, ...]:
 
 def _follow_document(session: Session, project: Project) -> None:
     """Update or recall derived values after a change of the document."""
-    for identity, runtime in project.layer_runtimes.items():
+    for identity, runtime in project.runtimes.layers.items():
         runtime.corrected = reuse_corrections(project.document, identity, runtime.corrected)
     project.measured.extent.recall(extent_key(project.document))
     project.update_comparisons(
@@ -281,7 +285,7 @@ def _prepares_all(session: Session, project: Project) -> bool:
 
 def _clips(project: Project) -> list[tuple[Clip, LayerRuntime]]:
     return [
-        (clip_of(project.document, layer), each) for layer, each in project.layer_runtimes.items()
+        (clip_of(project.document, layer), each) for layer, each in project.runtimes.layers.items()
     ]
 
 
@@ -330,7 +334,7 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
                 yield SKETCHING, runtime, clip
     if project.drag is not None:
         return
-    for runtime in project.layer_runtimes.values():
+    for runtime in project.runtimes.layers.values():
         if runtime.comparison is not None:
             comparison = runtime.comparison.clip(project.document)
             if is_wanted(comparison, runtime.store):
@@ -346,7 +350,7 @@ def _prepare(
     session: Session, project: Project, kind: JobKind, runtime: LayerRuntime, clip: Clip
 ) -> Job | None:
     """Return the job for the nearest in-betweens that a clip lacks, or for its mesh."""
-    domain, among = clip.layer.domain, len(project.layer_runtimes)
+    domain, among = clip.layer.domain, len(project.runtimes.layers)
     is_fine, frame = kind == REFINING, playback.current_frame(session, project)
     store = runtime.fine if is_fine else runtime.store
     if store is None or store.mesh.source is not domain:
@@ -448,7 +452,7 @@ def _derive(
 def _cut(session: Session, project: Project) -> Iterator[Job]:
     """Yield jobs for new cut-outs, and for the small pictures of the list of layers."""
     for layer in project.document.layers:
-        runtime, cut_out = project.layer_runtimes[layer.id], layer.cut_out
+        runtime, cut_out = project.runtimes.layers[layer.id], layer.cut_out
         cut = partial(cut_picture, runtime.picture, cut_out)
         yield from _derive(session, CUTTING, runtime.cut, cut_out, cut)
         whole = runtime.cut.value
@@ -518,7 +522,7 @@ def _span(session: Session, project: Project) -> Iterator[Job]:
     corrected = {clip.layer.id: each.corrected for clip, each in clips if each.corrected}
     if not all(each.is_whole for each in corrected.values()):
         return
-    stores = {layer: runtime.store.snapshot() for layer, runtime in project.layer_runtimes.items()}
+    stores = {layer: runtime.store.snapshot() for layer, runtime in project.runtimes.layers.items()}
     span = partial(
         measure_extent, document, stores, project.measured.parent_transforms.value, corrected
     )
@@ -539,7 +543,7 @@ def _show(session: Session, project: Project) -> None:
     if project.timeline.recording is not None and project.layer_runtime.corrected is not None:
         project.layer_runtime.corrected.lead(frame)
     shown, comparisons, poses = {}, {}, {}
-    if any(each.shown and each.shown.frame != frame for each in project.layer_runtimes.values()):
+    if any(each.shown and each.shown.frame != frame for each in project.runtimes.layers.values()):
         project.timeline.note_move(session.clock())
     is_moving = _is_moving(session, project)
     for clip, runtime in _clips(project):
@@ -558,10 +562,10 @@ def _show(session: Session, project: Project) -> None:
     for layer, attached in place_displayed_frames(
         document, shown, project.current_parent_transforms, poses, known
     ).items():
-        project.layer_runtimes[layer].shown = attached
+        project.runtimes.layers[layer].shown = attached
     # This uses the meshes alone, since the exact joints belong to the layers' own methods.
     for layer, attached in place_displayed_frames(document, comparisons, None, {}, known).items():
-        if (comparison := project.layer_runtimes[layer].comparison) is not None:
+        if (comparison := project.runtimes.layers[layer].comparison) is not None:
             comparison.shown = attached
 
 

@@ -40,7 +40,7 @@ FIT_PICTURE = ActionSpec(do(set_view, None), _("Fit picture"))
 @named_action(_("Fit pose"), "Home", icon="EXPAND", hint=_("Show the whole shape in this frame"))
 @with_project
 def zoom_to_pose(session: Session, project: Project) -> None:
-    shown = [runtime.shown for runtime in project.layer_runtimes.values()]
+    shown = [runtime.shown for runtime in project.runtimes.layers.values()]
     boxes = [
         bounding_box(each.placement.apply(each.positions)) for each in shown if each is not None
     ]

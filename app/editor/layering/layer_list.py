@@ -58,7 +58,7 @@ def layer_at(
 
 def is_layer_at(project: Project, identity: int, place: complex) -> bool:
     """Return whether a layer is visible at a place of the scene."""
-    shown = project.layer_runtimes[identity].shown
+    shown = project.runtimes.layers[identity].shown
     document = project.document
     if shown is None or (project.layer_list.solo and identity not in project.layer_list.solo):
         return False

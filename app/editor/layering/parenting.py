@@ -113,7 +113,7 @@ def _attach(
 ) -> None:
     """Attach layers to a parent by the joints that `find` computes."""
     document = project.document
-    if not set(joined) <= project.layer_runtimes.keys():
+    if not set(joined) <= project.runtimes.layers.keys():
         return
     siblings = project.samplers
 
@@ -140,7 +140,7 @@ def detach_layer(session: Session, project: Project, child: int) -> None:
 
     If the layer has other parents at other times, only the present attachment ends.
     """
-    shown, layer = project.layer_runtimes[child].shown, project.document.layer(child)
+    shown, layer = project.runtimes.layers[child].shown, project.document.layer(child)
     joint = layer.attachment_key_at(playback.current_frame(session, project))
     if joint is not None and len(layer.attachments) > 1:
         free = Attachment(parent=None, frame=joint.frame, keep_world_transform=True)

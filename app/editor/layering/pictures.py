@@ -61,7 +61,7 @@ def make_still(session: Session, project: Project, identity: int) -> None:
 @with_project
 def make_posable(session: Session, project: Project, identity: int) -> None:
     """Make a still picture posable: find its shape; its drawn pose stays."""
-    layer, picture = project.document.layer(identity), project.layer_runtimes[identity].picture
+    layer, picture = project.document.layer(identity), project.runtimes.layers[identity].picture
     imported = ImportedLayer(
         name=layer.name, data=layer.picture.data, picture=picture, corner=layer.corner
     )
@@ -99,7 +99,7 @@ def replace_picture(session: Session, identity: int, path: Path) -> None:
 
 @with_project
 def _replace_picture(session: Session, project: Project, identity: int, path: Path) -> None:
-    if identity not in project.layer_runtimes:
+    if identity not in project.runtimes.layers:
         return
     before, canvas = project.document.layer(identity), project.document.canvas
     scene = project.document.layers
@@ -118,7 +118,7 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
     def done(begun: tuple[KeyResolver, _LoadedLayer]) -> None:
         resolver, made = begun
         project.file.add_drawings(path)
-        project.pictures[made.layer.picture] = made.picture
+        project.runtimes.keep_picture(made.layer.picture, made.picture)
         resolving.begin_solving_keys(session, resolver)
         if resolver.before in project.document.layers:
             set_active_layer(session, identity)
@@ -168,11 +168,11 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
         project.history.do(group_commands.add_groups(groups), gesture=gesture)
         for layer, picture, _notices, runtime in made:
             identity = layer_commands.next_layer_id(project.document)
-            project.pictures[layer.picture] = picture
+            project.runtimes.keep_picture(layer.picture, picture)
             command = layer_commands.add_layer(replace(layer, id=identity))
             project.history.do(command, gesture=gesture)
             if runtime is not None and identity == layer.id:
-                project.layer_runtimes[identity] = runtime
+                project.runtimes.put(identity, runtime)
         update_layer_runtimes(project)
         set_active_layer(session, identity)
         dialog_actions.show_import_notice(session, project, summary)

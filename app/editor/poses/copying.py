@@ -85,7 +85,7 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
     known: dict[int, Pose] = {}
     works = {}
     for layer in layers:
-        clip, runtime = clip_of(document, layer.id), project.layer_runtimes[layer.id]
+        clip, runtime = clip_of(document, layer.id), project.runtimes.layers[layer.id]
         is_active = layer.id == project.selection.active
         pose = pose_at_playhead(session, project) if is_active else None
         pose = pose or keyed_pose_at(clip, segment_time_at(clip, frame))

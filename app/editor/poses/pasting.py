@@ -228,7 +228,7 @@ def _solving(
     project: Project, landing: PasteDestination, way: PasteMode, by: int
 ) -> Callable[[], Sequence[Keyframe]]:
     """Return the function that solves the poses for a layer, on the worker's thread."""
-    layer, runtime = landing.layer, project.layer_runtimes[landing.layer.id]
+    layer, runtime = landing.layer, project.runtimes.layers[landing.layer.id]
     earlier, sibling = runtime.rig, runtime.store.sampler
     if landing.is_own and way == "flipped":
         keys, pairs = fit_copied_keys(project, landing), project.document.pairs

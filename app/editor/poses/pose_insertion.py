@@ -97,7 +97,7 @@ def _fitted(project: Project, layer: Layer, pose: Pose, bounds: Bounds) -> Pose:
         pose = with_all_targets(layer, pose)
     if layer.bounds == bounds:
         return pose
-    runtime = project.layer_runtimes[layer.id]
+    runtime = project.runtimes.layers[layer.id]
     runtime.rig = rig = Rig.of(layer, runtime.rig)
     proven = certify(layer.map_of(pose), rig.deformer.boundary, layer.bounds)
     return replace(pose, certificate=proven)

@@ -87,7 +87,7 @@ class AttachTool(Tool):
         if not self.moved:
             return
         role: ColourRole = "danger" if self.is_circle else "accent"
-        own, runtimes = self.project.layer_runtime.shown, self.project.layer_runtimes
+        own, runtimes = self.project.layer_runtime.shown, self.project.runtimes.layers
         parent = None if self.parent is None else runtimes[self.parent].shown
         if own is not None and parent is not None:
             for loop in scene_outlines(parent):

@@ -4,11 +4,21 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from app.cut_out import CutOut
-from app.document import Baseline, Clip, Document, Layer, PictureFile, Variant, clip_of
+from app.document import (
+    Baseline,
+    Clip,
+    Document,
+    History,
+    Layer,
+    PictureFile,
+    Variant,
+    clip_of,
+)
 from app.editor.work.derived import Derived
+from app.editor.work.revised import Revised
 from app.motion import CorrectedFrames, DeformMesh, DisplayedFrame, InbetweenCache, needs_correction
 from app.solving import Rig
-from app.storage import CutOutResult, Picture, cut_picture
+from app.storage import CutOutResult, Picture, cut_picture, decode_picture
 from engine.arrays import Bytes
 
 
@@ -85,3 +95,41 @@ class LayerRuntime:
             self.corrected.rest()
         if self.store.sampler is not None:
             self.store.sampler.known.forget_transform()
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class LayerRuntimes(Revised):
+    """The runtimes of a document's layers, as many as it has layers."""
+
+    layers: dict[int, LayerRuntime]  # by layer id
+    # Decoded pictures, also of layers that undo may bring back.
+    pictures: dict[PictureFile, Picture] = field(default_factory=dict)
+
+    def keep_picture(self, file: PictureFile, picture: Picture) -> None:
+        """Keep a decoded picture for a layer that will use it."""
+        self.pictures[file] = picture
+
+    def put(self, layer: int, runtime: LayerRuntime) -> None:
+        """Use a runtime that was prepared for a new layer."""
+        self.layers[layer] = runtime
+
+    def match(self, document: Document, history: History) -> None:
+        """Make missing runtimes of layers, and delete those of layers that are gone."""
+        for identity in self.layers.keys() - {layer.id for layer in document.layers}:
+            del self.layers[identity]
+        # Pictures of layers that undo and redo may bring back are kept as well.
+        spare = self.pictures.keys() - {layer.picture for layer in document.layers}
+        for file in spare - history.picture_files if spare else ():
+            del self.pictures[file]
+        for layer in document.layers:
+            runtime = self.layers.get(layer.id)
+            if runtime is not None and runtime.file is layer.picture:
+                self.pictures[layer.picture] = runtime.picture
+                continue
+            if layer.picture not in self.pictures:
+                self.pictures[layer.picture] = decode_picture(layer.picture.data, layer.name)
+            self.layers[layer.id] = LayerRuntime.of(
+                clip_of(document, layer.id),
+                self.pictures[layer.picture],
+                among=len(document.layers),
+            )

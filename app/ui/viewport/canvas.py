@@ -64,7 +64,7 @@ class Canvas:
         if project is None or project.layer_runtime.shown is None:
             self.pose_pictures.release()
             return
-        comparisons = [runtime.comparison for runtime in project.layer_runtimes.values()]
+        comparisons = [runtime.comparison for runtime in project.runtimes.layers.values()]
         is_split = all(each is not None and each.shown is not None for each in comparisons)
         is_split &= not session.tools.is_cutting
         self._fit_targets(session.display.screen, 1 + is_split)
@@ -110,16 +110,16 @@ class Canvas:
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all inputs of the picture. While they are equal, the picture is unchanged."""
     return (
-        *[runtime.shown for runtime in project.layer_runtimes.values()],
-        *[runtime.cut.value for runtime in project.layer_runtimes.values()],
+        *[runtime.shown for runtime in project.runtimes.layers.values()],
+        *[runtime.cut.value for runtime in project.runtimes.layers.values()],
         *[
             runtime.comparison.shown
-            for runtime in project.layer_runtimes.values()
+            for runtime in project.runtimes.layers.values()
             if runtime.comparison
         ],
         *[
             runtime.store.whole
-            for runtime in project.layer_runtimes.values()
+            for runtime in project.runtimes.layers.values()
             if session.display.overlays.onion
         ],
         project.layer_runtime.store.sampler,
@@ -166,7 +166,7 @@ def _scene(
 ) -> Scene:
     palette = PALETTES[session.settings.preferences.theme]
     overlays = session.display.overlays
-    runtimes = project.layer_runtimes.values()
+    runtimes = project.runtimes.layers.values()
     drawing.release_but({mesh for runtime in runtimes for mesh in _meshes(runtime)})
     drawing.refresh()
     if session.tools.is_cutting:
@@ -178,7 +178,7 @@ def _scene(
             meshes=drawing.cut_view().meshes(),
             discs=mark_holes(project, palette, scale) if session.tools.mode == "holes" else (),
         )
-    shows = {layer: runtime.shown for layer, runtime in project.layer_runtimes.items()}
+    shows = {layer: runtime.shown for layer, runtime in project.runtimes.layers.items()}
     heat = None
     if session.display.tint is not None:
         heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.6, two_sided=True)
@@ -208,7 +208,7 @@ def _comparison_scene(
     """Return the scene by the compared method, without ghosts."""
     shows = {
         layer: runtime.comparison.shown
-        for layer, runtime in project.layer_runtimes.items()
+        for layer, runtime in project.runtimes.layers.items()
         if runtime.comparison
     }
     meshes = _posed(session, project, shows, drawing, number=COMPARISON)

@@ -53,7 +53,7 @@ class CutView:
     """
 
     def __init__(self, renderer: Renderer, project: Project, layer: int) -> None:
-        self.runtime = project.layer_runtimes[layer]
+        self.runtime = project.runtimes.layers[layer]
         self._cut = self.runtime.cut.value
         picture = self.runtime.picture
         corners = project.document.layer(layer).corner + _corners(*picture.size)

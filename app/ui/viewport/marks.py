@@ -187,7 +187,7 @@ def _others(project: Project, scale: float) -> tuple[Disc, ...]:
     """Return faint marks of the other layers' handles."""
     return tuple(
         Disc(centre=complex(place), radius=FAINT * scale, fill=(1.0, 1.0, 1.0, 0.35))
-        for layer, runtime in project.layer_runtimes.items()
+        for layer, runtime in project.runtimes.layers.items()
         if layer != project.selection.active and runtime.shown is not None
         for place in runtime.shown.placement.apply(runtime.shown.handle_positions)
     )

@@ -40,7 +40,9 @@ def _is_busy(session: Session) -> bool:
     # The system's dialog has its own input. Its answer is polled.
     asks_system = session.dialogs.uses_system and isinstance(session.dialogs.current, FileDialog)
     is_working = bool(session.jobs.kinds) or session.export.run is not None
-    is_working |= project is not None and bool(project.layer_setup.stale or project.deferred)
+    is_working |= project is not None and bool(
+        project.layer_setup.stale or project.pending.deferred
+    )
     return is_moving or is_working or asks_system or bool(session.notices.toasts)
 
 
@@ -61,5 +63,5 @@ def _awaits_in_between(session: Session) -> bool:
         return False
     if {frame_update.GLIMPSING, frame_update.SKETCHING}.isdisjoint(session.jobs.kinds):
         return False
-    shows = [runtime.shown for runtime in project.layer_runtimes.values()]
+    shows = [runtime.shown for runtime in project.runtimes.layers.values()]
     return any(shown is not None and not shown.is_current for shown in shows)

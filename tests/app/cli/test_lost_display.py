@@ -27,6 +27,7 @@ from app.document.commands import scene_commands
 from app.editor.parts.project_file import ProjectFile
 from app.editor.parts.selection import Selection
 from app.editor.project import Project
+from app.editor.work.layer_runtime import LayerRuntimes
 
 class Looks:
     def __init__(self, session, _):
@@ -38,7 +39,7 @@ class Looks:
         history.do(scene_commands.add_marker(0, "unsaved"))
         file, selection = ProjectFile(name="disc"), Selection(active=0)
         self.session.project = Project(
-            file=file, history=history, layer_runtimes={}, selection=selection
+            file=file, history=history, runtimes=LayerRuntimes(layers={}), selection=selection
         )
         x11 = ctypes.CDLL("libX11.so.6")
         x11.XOpenDisplay.restype = ctypes.c_void_p

@@ -25,6 +25,7 @@ from app.editor.parts.settings import SessionSettings
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
+from app.editor.work.layer_runtime import LayerRuntimes
 from app.errors import LissomError
 from app.storage.autosave import load_recoverable_file, load_report
 
@@ -148,7 +149,7 @@ class EndedWindow:
         project = Project(
             file=ProjectFile(name="disc"),
             history=History(document, saved=True),
-            layer_runtimes={},
+            runtimes=LayerRuntimes(layers={}),
             selection=Selection(active=0),
         )
         project.history.do(scene_commands.add_marker(0, "unsaved"))
@@ -225,7 +226,7 @@ def test_unsaved_work_is_kept_when_the_display_is_lost(tmp_path, monkeypatch, ca
             self.session.project = Project(
                 file=ProjectFile(name="disc"),
                 history=history,
-                layer_runtimes={},
+                runtimes=LayerRuntimes(layers={}),
                 selection=Selection(active=0),
             )
             display.handler(None)

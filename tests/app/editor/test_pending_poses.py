@@ -41,7 +41,7 @@ def test_command_is_refused_if_an_unfinished_drag_rules_it_out(session):
         with pytest.raises(LissomError, match=f"key at frame {last + 5}"):
             project.history.do(cycle_commands.set_cycle(0, 0, last + 2))
     settle(session)
-    assert not project.pending
+    assert not project.pending.changes
     assert last + 5 in project.layer.key_frames
     assert project.layer_runtime.shown.clip == project.clip
 

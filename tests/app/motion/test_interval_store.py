@@ -448,7 +448,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
         is_keyed=True,
         easing=session.settings.preferences.easing,
     )
-    project.pending.append(drag)
+    project.pending.add(drag)
     assert not list(due_jobs(session, project))
 
 
@@ -462,7 +462,7 @@ def test_where_much_is_prepared_layers_that_nobody_edits_come_one_after_the_othe
     session = session_of(document, tmp_path, prepares_ahead=True)
     for clip, runtime in zip(
         [clip_of(document, number) for number in range(3)],
-        session.project.layer_runtimes.values(),
+        session.project.runtimes.layers.values(),
         strict=True,
     ):
         assert streamed(runtime.store, clip) == [True] * 3

@@ -103,14 +103,14 @@ def test_drag_survives_each_command_that_edits_nothing(window, ready, monkeypatc
             "document": ready.document is dragged,
             "step": ready.history.undo_label == label,
             "drag": ready.drag is drag and ready.visible_drag is drag,
-            "at once": not ready.deferred and not exporting.is_export_under_way(session),
+            "at once": not ready.pending.deferred and not exporting.is_export_under_way(session),
         }
         lost = [what for what, is_held in held.items() if not is_held]
         assert not lost, f"“{name}” edits, waits or leaves: it belongs to another list"
         ready.selection.handles = frozenset({0})
     assert not drag.is_at_rest
     monkeypatch.setattr(session.jobs, "deliver", deliver)
-    window.until(lambda: not ready.pending)
+    window.until(lambda: not ready.pending.changes)
     check_at_rest(ready.document, goal)
     while ready.document is not start:
         assert ready.history.undo_label is not None
@@ -129,7 +129,7 @@ def test_drag_is_a_step_beside_each_edit_that_follows(window, ready):
         if steps[-1] != steps[-2] + 1:
             lost.append(name)
     assert not lost, "each is one step"
-    window.until(lambda: not ready.pending and not ready.deferred)
+    window.until(lambda: not ready.pending.changes and not ready.pending.deferred)
     check_invariants(session)
     for name in reversed(EDITS):
         before = ready.document
@@ -150,7 +150,7 @@ def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
     if name in FURTHER:
         window.until(lambda: ready.drag.preview is not None)
     call(window, name)
-    window.until(lambda: not ready.pending and not ready.deferred)
+    window.until(lambda: not ready.pending.changes and not ready.pending.deferred)
     assert session.project is ready, "it asks first"
     if isinstance(session.dialogs.current, Question):
         (_, save), _ = session.dialogs.current.answers

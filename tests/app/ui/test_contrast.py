@@ -125,7 +125,7 @@ def test_all_tabs_of_a_pose_that_falls_short(window, loose, check):
         check(tab)
     solved = loose.layer.poses[:-1]
     resolver = KeyResolver(before=loose.layer, bounds=loose.layer.bounds, poses=solved)
-    loose.pending.append(PendingChange(label="Solving the keys", key_resolver=resolver))
+    loose.pending.add(PendingChange(label="Solving the keys", key_resolver=resolver))
     window.show_tab("Deform")
     check("progress")
 

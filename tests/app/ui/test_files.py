@@ -119,7 +119,7 @@ def test_a_picture_dropped_on_a_scene_may_become_a_layer(window, project, drop):
     assert project.layer.name == "bar"
     window.act(editing.redo)
     window.settle()
-    assert set(project.layer_runtimes) == {layer.id for layer in project.document.layers}
+    assert set(project.runtimes.layers) == {layer.id for layer in project.document.layers}
 
 
 def test_a_layer_beyond_memory_is_refused(window, project, drop, monkeypatch):

@@ -88,7 +88,7 @@ def test_window_shows_the_frame_of_a_playhead_that_was_moved(window):
     last = window.session.project.document.frames.last
     playback.scrub(window.session, last)
     window.frames(2)
-    assert {each.shown.frame for each in window.session.project.layer_runtimes.values()} == {last}
+    assert {each.shown.frame for each in window.session.project.runtimes.layers.values()} == {last}
 
 
 @pytest.mark.usefixtures("everything")

@@ -82,7 +82,7 @@ def identity(project, name):
 
 
 def on_scene(project, name):
-    shown = project.layer_runtimes[identity(project, name)].shown
+    shown = project.runtimes.layers[identity(project, name)].shown
     return shown.placement.apply(shown.positions)
 
 
@@ -297,7 +297,7 @@ def swung(window, scene):
 
 def test_child_of_a_posed_parent_is_placed_with_the_correction(swung):
     arm, body = identity(swung, "arm"), identity(swung, "body")
-    shown = {each: runtime.shown for each, runtime in swung.layer_runtimes.items()}
+    shown = {each: runtime.shown for each, runtime in swung.runtimes.layers.items()}
     # The pose alone is elsewhere than the parent, which is drawn with a correction.
     poses = {body: swung.document.layer(body).keys[0].pose}
     shown[body] = replace(shown[body], correction=object())
@@ -334,11 +334,11 @@ def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(wind
     window.act(editing.edit_document, Command("Move", lambda document: document.with_layer(moved)))
     window.act(playback.seek, 6)
     window.settle()
-    shown = swung.layer_runtimes[arm].shown
+    shown = swung.runtimes.layers[arm].shown
     before = shown.placement.apply(shown.positions)
     window.act(detach_layer, arm)
     window.settle()
-    after = swung.layer_runtimes[arm].shown
+    after = swung.runtimes.layers[arm].shown
     assert not swung.document.layer(arm).has_parent
     assert after.placement == transform_at(swung.document, swung.document.layer(arm), 6)
     np.testing.assert_allclose(after.placement.apply(after.positions), before, rtol=0, atol=0.01)

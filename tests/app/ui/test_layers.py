@@ -322,7 +322,7 @@ def test_a_layer_is_seen_at_once_where_its_in_betweens_are_not_there_yet(window,
     assert keyed.layer.name == "arm copy"
     window.act(delete_layers, keyed.selection.active)
     window.act(editing.undo)
-    assert all(runtime.shown is not None for runtime in keyed.layer_runtimes.values())
+    assert all(runtime.shown is not None for runtime in keyed.runtimes.layers.values())
 
 
 def test_the_list_shows_small_pictures(window, scene, listed):
@@ -341,12 +341,12 @@ def test_the_list_shows_small_pictures(window, scene, listed):
     assert shown > 100
     window.act(toggle_layers_hidden, arm)
     assert red() < shown / 4
-    small = scene.layer_runtimes[arm].small.value
+    small = scene.runtimes.layers[arm].small.value
     assert max(small.shape[:2]) == 96
     # Made once, whatever else is done with the layer.
     window.act(editing.edit_document, layer_commands.set_opacity(arm, 0.5))
     window.settle()
-    assert scene.layer_runtimes[arm].small.value is small
+    assert scene.runtimes.layers[arm].small.value is small
 
 
 def enter(robot):
@@ -412,7 +412,7 @@ def test_attached_layer_follows_live_and_poses_around_its_joint(window, scene):
     top = scene.layer.handles[1].id
     window.act(set_targets, {top: Target(position=110 + 155j)})
     window.settle()
-    child, parent = scene.layer_runtimes[arm].shown, scene.layer_runtimes[body].shown
+    child, parent = scene.runtimes.layers[arm].shown, scene.runtimes.layers[body].shown
     joint = scene.document.layer(arm).attachments[0]
     at = parent.pivot_frame_at(joint.parent_point)
     place = child.placement.apply(np.array([child.pivot_frame_at(95 + 118j).position]))[0]
@@ -425,13 +425,13 @@ def test_attached_layer_follows_live_and_poses_around_its_joint(window, scene):
     hand = scene.layer.handles[0].id
     window.act(set_targets, {hand: Target(position=170 + 170j)})
     window.settle()
-    after = scene.layer_runtimes[arm].shown
+    after = scene.runtimes.layers[arm].shown
     held = after.placement.apply(np.array([after.pivot_frame_at(95 + 118j).position]))[0]
     assert abs(held - at.position) < 1e-3 * WIDTH
     before = after.placement.apply(after.positions)
     window.act(detach_layer, arm)
     window.settle()
-    loose = scene.layer_runtimes[arm].shown
+    loose = scene.runtimes.layers[arm].shown
     assert np.abs(loose.placement.apply(loose.positions) - before).max() < 1e-3
 
 
@@ -853,7 +853,7 @@ def test_handles_are_shown_of_the_layer_that_is_chosen_even_while_in_betweens_ar
     window.settle()
     window.act(editing.select_handles, frozenset())
     # As long as the worker has not made them, no layer has a sampler.
-    for runtime in scene.layer_runtimes.values():
+    for runtime in scene.runtimes.layers.values():
         runtime.store.sampler = None
     before = np.asarray(window.picture()).astype(int)
     scene.selection.active = identity(scene, "body")
@@ -1140,7 +1140,7 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
 ):
     window.act(set_active_layer, identity(keyed, "arm"))
     window.settle()
-    arm, body = (keyed.layer_runtimes[identity(keyed, name)] for name in ("arm", "body"))
+    arm, body = (keyed.runtimes.layers[identity(keyed, name)] for name in ("arm", "body"))
     body_id = identity(keyed, "body")
     for runtime in (arm, body):
         assert runtime.store.sampler.extension is not None  # made where nothing needed it yet

@@ -184,7 +184,7 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
     ghost.file.path = tmp_path / "ghost.lissom"
     saving.save(window.session)
     arrive(window, ghost)
-    window.until(lambda: ghost.file.path.exists() and not ghost.pending)
+    window.until(lambda: ghost.file.path.exists() and not ghost.pending.changes)
     (again,) = ghost.layer.motions
     assert again.last < given.last
     assert ghost.document.frames.last == again.last == ghost.layer.keys[-1].frame

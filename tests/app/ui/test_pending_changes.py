@@ -55,7 +55,7 @@ def test_drag_comes_to_rest_whatever_follows(window, loose, name):
     window.settle()
     playback.stop_playback(window.session)
     window.settle()
-    assert not loose.pending
+    assert not loose.pending.changes
     check_at_rest(loose.document, goal)
     set_active_layer(window.session, 0)
     while loose.document is not start:
@@ -118,7 +118,7 @@ def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, loose):
 def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
     duplicate_layer(window.session, 0)
     window.settle()
-    (other,) = loose.layer_runtimes.keys() - {0}
+    (other,) = loose.runtimes.layers.keys() - {0}
     goals = {}
     with window.session.jobs.held(POSING):
         for identity in (0, other):
@@ -141,7 +141,7 @@ def test_a_save_has_a_drag_on_each_of_many_layers(window, loose, tmp_path):
             goals[layer.id] = drag_bar(window, loose)
         saving.write_project(window.session, path, None)
         assert not path.exists()
-    window.until(lambda: not loose.pending)
+    window.until(lambda: not loose.pending.changes)
     saved = load_project(path)
     for identity, goal in goals.items():
         check_at_rest(saved, goal, layer=identity)
@@ -173,7 +173,7 @@ def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, lo
     window.until(lambda: (tmp_path / "before.png").exists() and session.export.run is None)
     goal = drag_bar(window, loose)
     exporting.start_export(session, tmp_path / "a.png")
-    assert loose.deferred
+    assert loose.pending.deferred
     exporting.start_export(session, tmp_path / "b.png")
     assert "An export is running." in session.notices.toasts[-1].text
     saving.request_quit(session)
@@ -318,7 +318,7 @@ def test_decoded_pictures_go_with_the_steps_that_have_them(window, loose, tmp_pa
         window.settle()
         window.act(editing.undo)
         window.settle()
-    assert loose.pictures.keys() <= loose.history.picture_files
+    assert loose.runtimes.pictures.keys() <= loose.history.picture_files
 
 
 def test_within_a_job_the_clock_goes_on(window):
@@ -395,9 +395,9 @@ def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(wind
         goal = drag_bar(window, loose)
         playback.scrub(window.session, 40)
         pasting.paste_copied(window.session, "flipped")
-        assert [each.what for each in loose.deferred] == ["Paste flipped"]
+        assert [each.what for each in loose.pending.deferred] == ["Paste flipped"]
         editing.undo(window.session)
-        assert not loose.deferred
+        assert not loose.pending.deferred
         assert loose.drag is not None, "the drag goes on"
     window.settle()
     check_at_rest(loose.document, goal)
@@ -415,7 +415,7 @@ def test_a_save_that_waits_is_not_taken_back(window, loose, tmp_path):
         drag_bar(window, loose)
         saving.save(window.session)
         editing.undo(window.session)
-        assert [each.what for each in loose.deferred] == ["Save"]
+        assert [each.what for each in loose.pending.deferred] == ["Save"]
     window.settle()
     assert loose.file.path.exists()
 
@@ -443,5 +443,5 @@ def test_a_drag_of_a_layer_that_stands_still_since_comes_to_rest(window, loose):
     window.frames(1)
     make_still(window.session, 0)
     copying.copy_pose_or_keys(window.session)
-    window.until(lambda: not loose.pending)
+    window.until(lambda: not loose.pending.changes)
     assert drag.is_at_rest

@@ -270,11 +270,11 @@ class Walk:
         self.window.frames(2)
         if session.jobs.kinds or frame_update.is_due_in_time(session):
             return
-        before = project.document, [each.shown for each in project.layer_runtimes.values()]
+        before = project.document, [each.shown for each in project.runtimes.layers.values()]
         run_update_steps(session)
         assert (
             project.document,
-            [each.shown for each in project.layer_runtimes.values()],
+            [each.shown for each in project.runtimes.layers.values()],
         ) == before
         assert not session.jobs.kinds, f"late jobs: {session.jobs.kinds}"
 
@@ -1006,7 +1006,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     workers.release()
     window.settle()
     # So would what waits for a mesh that waits for the brush to rest.
-    project.deferred.clear()
+    project.pending.deferred.clear()
     last = project.document, project.history.preview_pose
     steps = 0
     while project.history.undo_label is not None:

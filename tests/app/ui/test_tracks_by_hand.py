@@ -240,7 +240,7 @@ def test_escape_takes_a_turn_of_a_track_back(window, keyed):
 
     turn_by(window, keyed, 0.5, then=then)
     assert keyed.document is before
-    assert not keyed.pending
+    assert not keyed.pending.changes
 
 
 def test_the_ring_turns_the_pose_where_no_row_of_a_track_is_chosen(window, keyed):
@@ -615,7 +615,7 @@ def test_a_hand_sees_its_track_while_a_pose_elsewhere_waits_for_what_is_shown(wi
     seen = []
     drag(window, start, start + 10j, then=then)
     assert seen == [True]
-    assert not keyed.pending
+    assert not keyed.pending.changes
 
 
 def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
@@ -632,5 +632,5 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
     release_drag(window.session)
     playback.scrub(window.session, EARLIER)
     window.settle()
-    assert not keyed.pending
+    assert not keyed.pending.changes
     assert any(COMPLAINT in toast.text for toast in window.session.notices.toasts)

@@ -113,7 +113,7 @@ def seen(project, frame):
 def place(project, name, window):
     """Where the middle of a layer's outline is drawn in the scene."""
     window.settle()
-    shown = project.layer_runtimes[
+    shown = project.runtimes.layers[
         next(f.id for f in project.document.layers if f.name == name)
     ].shown
     return complex(shown.placement.apply(shown.positions).mean())

@@ -120,7 +120,7 @@ def rebuild_changed_cut_out(session: Session, project: Project) -> None:
     """Rebuild the domain after a change of the cut-out, once the brush rests; once a frame."""
     stale = project.stale_layer
     waited = project.layer_setup.note_stale(stale, session.clock())
-    is_busy = session.tools.active is not None or project.pending
+    is_busy = session.tools.active is not None or project.pending.changes
     if stale is not None and not is_busy and waited >= REST:
         resolver = KeyResolver(before=stale, bounds=stale.bounds, meshing=stale.meshing)
         _go_on(session, project, resolver)
@@ -137,7 +137,7 @@ def cancel_solving_keys(session: Session, project: Project) -> None:
     session.jobs.drop(SOLVING_KEYS)
     if project.key_resolver is not None and _follows_cut_out(project.key_resolver):
         project.layer_setup.refuse(project.key_resolver.before)
-    project.pending = [change for change in project.pending if not change.key_resolver]
+    project.pending.drop_key_resolvers()
 
 
 @with_project
@@ -158,7 +158,7 @@ def _go_on(session: Session, project: Project, resolver: KeyResolver) -> None:
     if resolver.is_over:
         _accept(session, project, resolver)
         return
-    picture = project.layer_runtimes[resolver.before.id].picture.rgba
+    picture = project.runtimes.layers[resolver.before.id].picture.rgba
 
     def failed(error: Exception) -> None:
         if resolver.replaces_picture:

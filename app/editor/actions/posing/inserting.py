@@ -37,7 +37,7 @@ def insert_key_at(
     session: Session, project: Project, layer: int, frame: int, gesture: object | None = None
 ) -> None:
     """Insert a key of the pose of a layer at a frame; inserts of a gesture are one undo step."""
-    if layer not in project.layer_runtimes:
+    if layer not in project.runtimes.layers:
         return
     unkeyed = project.history.preview_pose
     if unkeyed is not None and (unkeyed.layer, unkeyed.frame) == (layer, frame):
@@ -63,7 +63,7 @@ def solve_nearest_pose(
     kind: JobKind,
 ) -> None:
     """Solve for the pose nearest to a clip's in-between at a frame, on the worker."""
-    runtime = project.layer_runtimes[clip.layer.id]
+    runtime = project.runtimes.layers[clip.layer.id]
     rig, sibling = Rig.of(clip.layer, runtime.rig), runtime.store.sampler
 
     def work() -> Pose:
@@ -76,7 +76,7 @@ def _insert(
     session: Session, project: Project, clip: Clip, frame: int, gesture: object | None, pose: Pose
 ) -> None:
     layer = clip.layer.id
-    if layer in project.layer_runtimes and clip_of(project.document, layer) == clip:
+    if layer in project.runtimes.layers and clip_of(project.document, layer) == clip:
         found = PreviewPose(layer=layer, frame=frame, pose=pose)
         project.history.do(key_pose_command(session, project, found), gesture=gesture)
         if project.selection.active == layer:

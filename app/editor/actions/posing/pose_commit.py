@@ -12,7 +12,7 @@ POSING = JobKind(_("Posing"), _("This pose could not be found"), "hand")
 
 def drop_drag(session: Session, project: Project, drag: DragSession) -> None:
     """End a drag without a step; a result that is still computed is dropped."""
-    if drag in project.pending:
+    if drag in project.pending.changes:
         project.pending.remove(drag)
         project.history.before_change = None
         session.jobs.drop(POSING)

@@ -58,7 +58,9 @@ def _change(
     change: Callable[[DragSession, object], None],
 ) -> None:
     """Change the drag of the present pose, or begin one."""
-    if project.layer_runtime.shown is None or (gesture and gesture is project.ended_gesture):
+    if project.layer_runtime.shown is None or (
+        gesture and gesture is project.pending.ended_gesture
+    ):
         return
     drag = project.visible_drag
     if drag is None or not drag.is_held:
@@ -203,7 +205,7 @@ def _begin(session: Session, project: Project, gesture: object | None) -> DragSe
         is_keyed=session.settings.preferences.auto_key,
         easing=session.settings.preferences.easing,
     )
-    project.pending.append(begun)
+    project.pending.add(begun)
     project.history.before_change = partial(_end_for_change, session, project)
     return begun
 
@@ -212,7 +214,7 @@ def _end_for_change(session: Session, project: Project) -> None:
     """Commit the drag before another change of the document; later moves of its hand are void."""
     drag = project.drag
     if drag is not None and drag.is_held:
-        project.ended_gesture = drag.gesture
+        project.pending.end_gesture(drag.gesture)
     finish_drag(session, project)
 
 

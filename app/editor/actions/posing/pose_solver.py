@@ -39,7 +39,8 @@ def update_drag(session: Session, project: Project) -> None:
         return
     is_here = is_drag_at_playhead(session, project, drag)
     if drag.is_held and not is_here:
-        drag.is_held, project.ended_gesture = False, drag.gesture
+        drag.is_held = False
+        project.pending.end_gesture(drag.gesture)
     if is_here or drag.preview is None:
         drag.preview = drag.newest
     if not drag.is_held and _is_final(project, drag) and drag.newest is not None:
@@ -91,12 +92,12 @@ def step_pose_solver(session: Session, project: Project) -> None:
         return
 
     def failed(error: Exception) -> None:
-        if drag in project.pending:
+        if drag in project.pending.changes:
             drop_drag(session, project, drag)
             report_failure(session, POSING.complaint, error)
 
     def done(steps: _Steps) -> None:
-        if session.project is project and drag in project.pending:
+        if session.project is project and drag in project.pending.changes:
             session.diagnostics.note_solver_time(steps.seconds)
             _take(project, drag, steps)
             update_drag(session, project)
@@ -158,7 +159,7 @@ def _work(
     session: Session, project: Project, drag: DragSession, pace: _Pace
 ) -> Callable[[], _Steps]:
     """Return the function that takes the next steps of a drag."""
-    runtime = project.layer_runtimes[drag.layer]
+    runtime = project.runtimes.layers[drag.layer]
     begin = partial(_begin, drag.clip, drag.frame, drag.before, runtime.rig, runtime.store.sampler)
     aim = drag.targets if drag.targets is not None else tuple(drag.target_changes.values())
     hands = tuple(drag.dragged_targets.values())
@@ -210,7 +211,7 @@ def _begin(
 
 def _take(project: Project, drag: DragSession, steps: _Steps) -> None:
     """Store the result of some steps."""
-    project.layer_runtimes[drag.layer].rig = steps.solver.rig
+    project.runtimes.layers[drag.layer].rig = steps.solver.rig
     if drag.start is None:
         drag.start = steps.start
         drag.update_targets()

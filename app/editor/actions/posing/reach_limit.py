@@ -21,13 +21,13 @@ def clamp_unreachable_targets(project: Project, drag: DragSession) -> None:
     asked, places = drag.world_targets, drag.reached
     drag.clamp_targets()
     if asked is not None:
-        project.stopped_drag = StoppedDrag(drag, {i: asked[i] for i in places}, places)
+        project.pending.stop_drag(StoppedDrag(drag, {i: asked[i] for i in places}, places))
 
 
 @with_project
 def show_stopped_drag(session: Session, project: Project, loosen: RelaxLimits) -> None:
     """Show why handles of the last drag stopped before their targets, and offer the remedy."""
-    stopped, project.stopped_drag = project.stopped_drag, None
+    stopped = project.pending.take_stopped_drag()
     if stopped is None:
         return
     drag, asked, places = stopped

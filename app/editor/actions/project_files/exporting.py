@@ -119,7 +119,9 @@ def _begin_copy(session: Session, project: Project, request: ExportRequest) -> N
 
 def is_export_under_way(session: Session) -> bool:
     """Return whether an export runs, is prepared, or waits for pending changes."""
-    is_waiting = session.project is not None and any(map(_is_export, session.project.deferred))
+    is_waiting = session.project is not None and any(
+        map(_is_export, session.project.pending.deferred)
+    )
     return is_waiting or session.export.run is not None or PREPARING in session.jobs.kinds
 
 
@@ -159,10 +161,10 @@ def _prepare(
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
             document = key_pose_command(session, project, unkeyed)(document)
-    pictures = {layer: each.cut.value.texture for layer, each in project.layer_runtimes.items()}
+    pictures = {layer: each.cut.value.texture for layer, each in project.runtimes.layers.items()}
     samplers = {
         layer: (runtime.fine or runtime.store).sampler or runtime.store.sampler
-        for layer, runtime in project.layer_runtimes.items()
+        for layer, runtime in project.runtimes.layers.items()
     }
     extent = project.measured.extent
     box = extent.value if extent.follows(extent_key(document)) else None
@@ -200,7 +202,7 @@ def cancel_export(session: Session) -> None:
     if not is_export_under_way(session):
         return
     if project is not None:
-        project.deferred = [each for each in project.deferred if not _is_export(each)]
+        project.pending.drop_deferred(list(filter(_is_export, project.pending.deferred)))
     # Dropped first, so that no failure is reported; then abandoned, since it may take long.
     session.jobs.drop(PREPARING)
     session.jobs.abandon(PREPARING)

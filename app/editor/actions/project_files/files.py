@@ -19,7 +19,7 @@ from app.editor.parts.selection import Selection
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import JobKind
-from app.editor.work.layer_runtime import LayerRuntime
+from app.editor.work.layer_runtime import LayerRuntime, LayerRuntimes
 from app.errors import display_name
 from app.storage import (
     LAYERED,
@@ -196,7 +196,7 @@ def _install(
     project = Project(
         file=ProjectFile(name=name, path=own, digest=opened.read_as, drawings=drawings, lock=hold),
         history=History(opened.document, saved=True),
-        layer_runtimes=opened.layer_runtimes,
+        runtimes=LayerRuntimes(layers=opened.layer_runtimes),
         selection=Selection(active=foremost_posable(opened.document)),
     )
     saving.set_project(session, project)

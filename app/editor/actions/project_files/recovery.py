@@ -15,6 +15,7 @@ from app.editor.parts.selection import Selection
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import JobKind
+from app.editor.work.layer_runtime import LayerRuntimes
 from app.storage import (
     SourceInfo,
     find_recoverable_files,
@@ -81,7 +82,7 @@ def install_recovered(session: Session, path: Path, opened: OpenedFile, origin: 
         Project(
             file=ProjectFile(name=origin.name, path=origin.path, is_recovered=True),
             history=History(opened.document, saved=False),
-            layer_runtimes=opened.layer_runtimes,
+            runtimes=LayerRuntimes(layers=opened.layer_runtimes),
             selection=Selection(active=foremost_posable(opened.document)),
         ),
     )

@@ -77,7 +77,7 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
     """Save the project to a file as it is, without waiting for pending changes."""
     document, known = project.document, project.file.digest if path == project.file.path else None
     textures = {
-        layer: runtime.cut.value.texture for layer, runtime in project.layer_runtimes.items()
+        layer: runtime.cut.value.texture for layer, runtime in project.runtimes.layers.items()
     }
     drawings = tuple(project.file.drawings)
 
@@ -116,7 +116,7 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
             )
 
     saving = PendingChange(label=SAVING.label, changes=False)
-    project.pending.append(saving)
+    project.pending.add(saving)
     session.jobs.add(Job(kind=SAVING, work=work, done=done, failed=failed))
 
 
@@ -179,9 +179,9 @@ def confirm_unsaved(session: Session, then: Action) -> None:
     if project is None:
         then.apply(session)
         return
-    asked = [each for each in project.deferred if _asks_about(each.then, then)]
+    asked = [each for each in project.pending.deferred if _asks_about(each.then, then)]
     if asked:
-        project.deferred = [each for each in project.deferred if each not in asked]
+        project.pending.drop_deferred(asked)
         ask_unsaved_now(session, then)
         return
     if not pending_changes.is_document_idle(project, after_saves=True):

@@ -97,7 +97,7 @@ def _key(session: Session, project: Project, track: Track, gesture: object) -> N
             velocity=velocity_at(track, clip, frame),
             easing=easing,
         )
-        if layer.id in project.layer_runtimes and project.document.layer(layer.id).tracks:
+        if layer.id in project.runtimes.layers and project.document.layer(layer.id).tracks:
             project.history.do(command, gesture=gesture)
 
     at = track_at(track, clip, frame)

@@ -86,7 +86,7 @@ def _ground(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _corrected(project: Project) -> Iterator[tuple[Clip, LayerRuntime, CorrectedFrames]]:
-    for layer, runtime in project.layer_runtimes.items():
+    for layer, runtime in project.runtimes.layers.items():
         clip = clip_of(project.document, layer)
         if runtime.corrected is not None and not runtime.store.has_failed(clip, "correction"):
             yield clip, runtime, runtime.corrected

@@ -47,7 +47,7 @@ def drag_track_handle(
     begun = TrackDrag(
         layer=project.selection.active, handle=handle, frame=frame, gesture=gesture, place=place
     )
-    project.pending.append(begun)
+    project.pending.add(begun)
 
 
 @with_project
@@ -80,7 +80,7 @@ def rotate_track_handle(
         place=complex(place[handle_index(project, handle)]),
         turn=angle,
     )
-    project.pending.append(begun)
+    project.pending.add(begun)
 
 
 def cancel_track_drag(project: Project, gesture: object) -> None:

@@ -159,7 +159,7 @@ def draw_row_picture(
     high = ImVec2(left.x + WIDE * em, left.y + half)
     draw_list = imgui.get_window_draw_list()
     draw_list.add_rect_filled(low, high, PAPER, 0.25 * em)
-    pixels = project.layer_runtimes[layer.id].small.value
+    pixels = project.runtimes.layers[layer.id].small.value
     picture = None if pixels is None else pictures(layer.id, pixels)
     if picture is None:
         icon = icons.ICON_FA_IMAGE if layer.still else icons.ICON_FA_PERSON

@@ -9,7 +9,7 @@ from app.texts import _, ngettext
 
 def find_residuals(project: Project, layer: Layer, track: Track) -> Mapping[int, float]:
     """Return the largest target error of the track's handles in pixels, by frame."""
-    corrected = project.layer_runtimes[layer.id].corrected
+    corrected = project.runtimes.layers[layer.id].corrected
     if corrected is None or not track.enabled:
         return {}
     lacks = {
@@ -24,7 +24,7 @@ def describe_residual(project: Project, layer: Layer, track: Track, frame: int) 
     miss = find_residuals(project, layer, track).get(frame)
     if miss is None:
         return ""
-    corrected = project.layer_runtimes[layer.id].corrected
+    corrected = project.runtimes.layers[layer.id].corrected
     correction = corrected.at(corrected.clip, frame) if corrected else None
     limits = correction.limits if correction else ()
     if limits:

@@ -52,7 +52,7 @@ class GpuResources:
     def brightness(self) -> Floats:
         """Brightness of the backmost picture as it is cut out. The backdrop must differ from it."""
         (first, *_) = self.project.document.layers
-        texture = self.project.layer_runtimes[first.id].cut.value.texture
+        texture = self.project.runtimes.layers[first.id].cut.value.texture
         if self._measured is None or self._measured[0] is not texture:
             self._measured = texture, measure_brightness(texture)
         return self._measured[1]
@@ -92,10 +92,10 @@ class GpuResources:
 
     def refresh(self) -> None:
         """Update the pictures to their present cut-outs."""
-        used = {self._key(layer): layer for layer in self.project.layer_runtimes}
+        used = {self._key(layer): layer for layer in self.project.runtimes.layers}
         for key in list(self._pictures):
             if key in used:
-                self._pictures[key].write(self.project.layer_runtimes[used[key]].cut.value.texture)
+                self._pictures[key].write(self.project.runtimes.layers[used[key]].cut.value.texture)
             else:
                 # Undo may bring it back, but its mesh is gone.
                 self._pictures.pop(key).release()
@@ -167,13 +167,13 @@ class GpuResources:
         """Return a layer's picture on the graphics card. Uncut layers of one file share it."""
         key = self._key(layer)
         if key not in self._pictures:
-            texture = self.project.layer_runtimes[layer].cut.value.texture
+            texture = self.project.runtimes.layers[layer].cut.value.texture
             context = self._renderer.programs.context
             self._pictures[key] = GpuPicture(context, texture, is_for_screen=True)
             release_pages(texture)
         return self._pictures[key]
 
     def _key(self, layer: int) -> tuple[int | None, Picture]:
-        runtime = self.project.layer_runtimes[layer]
+        runtime = self.project.runtimes.layers[layer]
         is_whole = runtime.cut.value.texture is runtime.picture.rgba
         return None if is_whole else layer, runtime.picture

@@ -62,7 +62,7 @@ def _ghost(
 
     If a parent layer has just moved, the ghost is omitted until its place is computed.
     """
-    document, runtime = project.document, project.layer_runtimes[layer.id]
+    document, runtime = project.document, project.runtimes.layers[layer.id]
     # During a drag, in-betweens arrive later. Until then the last ones stay.
     known = runtime.store.whole
     if known is None or (at not in known.frames and not known.loop):
@@ -92,7 +92,7 @@ def count_meshes_behind(session: Session, project: Project, meshes: int) -> int:
     """Return how many meshes lie behind the ghosts: all, or only a background's."""
     if session.settings.preferences.ghosts_in_front:
         return meshes
-    document, shows = project.document, project.layer_runtimes
+    document, shows = project.document, project.runtimes.layers
     frame = max((each.shown.frame for each in shows.values() if each.shown), default=0)
     still = {
         each.id: each.still and not each.keys_of(TRANSFORM)

@@ -39,9 +39,9 @@ class PosePictures:
         `posable` returns a layer's mesh on the graphics card that can be posed.
         """
         meshes = {
-            layer: project.layer_runtimes[layer].store.mesh
+            layer: project.runtimes.layers[layer].store.mesh
             for layer, _ in self._wanted
-            if layer in project.layer_runtimes
+            if layer in project.runtimes.layers
         }
         kind = (meshes, self._side, session.settings.preferences.theme)
         if kind != self._kind:

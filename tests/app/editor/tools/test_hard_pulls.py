@@ -215,7 +215,7 @@ def test_a_pose_that_rests_when_the_hand_lets_go_is_kept(session):
     phi = project.layer.key(0).pose.phi
     tool_pointer.release_pointer(session, asked)
     run_update_steps(session)
-    assert not project.pending
+    assert not project.pending.changes
     assert project.layer.key(0).pose.phi is phi
     assert project.layer.key(0).pose.targets[hand].position == asked
 

@@ -83,7 +83,7 @@ def test_a_drag_from_beside_moves_all_of_it_in_one_step(session):
     document, before = session.project.document, pose_of(session)
     drag(session, ctrl=True, shift=True)
     assert is_moved(session, pose_of(session), before, WAY), "at once, not as a solver finds it"
-    assert not session.project.pending
+    assert not session.project.pending.changes
     settle(session)
     assert is_moved(session, pose_of(session), before, WAY)
     assert session.project.history.undo_label == "Move"
@@ -122,7 +122,7 @@ def test_escape_in_the_middle_takes_it_back(session):
     tool_pointer.cancel_tool(session)
     settle(session)
     assert project.document is document
-    assert not project.pending
+    assert not project.pending.changes
 
 
 def test_numbers_and_axes_are_typed(session):
@@ -162,7 +162,7 @@ def joined(blob, tmp_path):
 
 def places_of(session, layer):
     """Where all points of a layer are in the scene."""
-    shown = session.project.layer_runtimes[layer].shown
+    shown = session.project.runtimes.layers[layer].shown
     return shown.placement.apply(shown.positions)
 
 
@@ -259,7 +259,7 @@ def test_a_pose_on_its_way_gets_there_elsewhere(blob, tmp_path):
     run_update_steps(session)
     assert session.jobs.wait_until_idle()
     session.jobs.deliver()
-    assert session.project.pending
+    assert session.project.pending.changes
     drag(session, ctrl=True, shift=True)
     settle(session)
     now = pose_of(session)

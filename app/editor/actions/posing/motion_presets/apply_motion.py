@@ -34,7 +34,7 @@ def apply_motion_preset(session: Session, project: Project) -> None:
 
 @with_project
 def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
-    if draft.layer not in project.layer_runtimes:
+    if draft.layer not in project.runtimes.layers:
         return
     before = project.document.layer(draft.layer)
     if before.domain is not draft.domain:
@@ -184,7 +184,7 @@ def apply_motion_at_size(
     session: Session, project: Project, layer: int, first: int, size: float
 ) -> None:
     """Apply a motion that begins at a frame again, at another size."""
-    found = project.document.layer(layer) if layer in project.layer_runtimes else None
+    found = project.document.layer(layer) if layer in project.runtimes.layers else None
     given = next((each for each in found.motions if each.first == first), None) if found else None
     if found is None or given is None:
         session.notices.show(_("This motion was deleted."))
@@ -209,6 +209,6 @@ def cancel_motion_job(session: Session, project: Project) -> None:
     task = project.motion_job
     if task is not None:
         session.jobs.drop(GIVING)
-        project.pending = [change for change in project.pending if not change.motion_job]
+        project.pending.drop_motion_jobs()
         if task.before.id == project.selection.active:
             _reopen(session, project, task.setup)
