@@ -34,11 +34,7 @@ from app.editor.parts.timeline import (
     TimeGesture as TimeGesture,
     TimeRangeView as TimeRangeView,
 )
-from app.editor.parts.tools import (
-    CutTool as CutTool,
-    Hint as Hint,
-    StiffnessTool as StiffnessTool,
-)
+from app.editor.parts.tools import CutTool as CutTool, Hint as Hint, StiffnessTool as StiffnessTool
 from app.editor.parts.viewport_state import (
     CurveKind as CurveKind,
     HeatMap as HeatMap,

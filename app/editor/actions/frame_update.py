@@ -155,29 +155,16 @@ def follow_playhead(session: Session, project: Project) -> None:
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all values that decide which jobs are due."""
-    take, drag = project.timeline.recording, project.drag
+    take, drag, chosen = project.timeline.recording, project.drag, project.selection
     return (
-        *(
-            project.document,
-            project.history.position,
-            project.selection.active,
-            project.selection.handles,
-        ),
+        *(project.document, project.history.position, chosen.active, chosen.handles),
         *(playback.current_frame(session, project), project.timeline.playhead.since is None),
         *(session.jobs.kinds, session.jobs.delivered, session.settings.prepares_ahead),
-        *(session.display.overlays, session.display.compare_view),
-        *(
-            session.export.frame_box,
-            project.viewport.awaits_extent,
-            session.tools.active,
-            session.tools.mode == "record",
-        ),
+        *(session.display.overlays, session.display.compare_view, session.export.frame_box),
+        *(project.viewport.awaits_extent, session.tools.active, session.tools.mode == "record"),
         *(project.selected_track, take, take and (take.is_over, len(take.samples))),
-        *(
-            project.unkeyed_pose,
-            tuple(project.pending.changes),
-            drag and (drag.is_held, drag.preview),
-        ),
+        *(project.unkeyed_pose, tuple(project.pending.changes)),
+        drag and (drag.is_held, drag.preview),
         tuple(runtime.store for runtime in project.runtimes.layers.values()),
     )
 

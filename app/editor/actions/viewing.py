@@ -12,13 +12,7 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.motion import BoundingBox, bounding_box
 from app.render import View
-from app.storage import (
-    LARGEST_GHOST_STEP,
-    LARGEST_SCALE,
-    MOST_GHOSTS,
-    SMALLEST_SCALE,
-    ThemeName,
-)
+from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName
 from app.texts import _
 
 SCALE_STEP = 0.25

@@ -4,16 +4,7 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from app.cut_out import CutOut
-from app.document import (
-    Baseline,
-    Clip,
-    Document,
-    History,
-    Layer,
-    PictureFile,
-    Variant,
-    clip_of,
-)
+from app.document import Baseline, Clip, Document, History, Layer, PictureFile, Variant, clip_of
 from app.editor.work.derived import Derived
 from app.editor.work.revised import Revised
 from app.motion import CorrectedFrames, DeformMesh, DisplayedFrame, InbetweenCache, needs_correction

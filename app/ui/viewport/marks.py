@@ -245,12 +245,7 @@ def _paths(
 
 def _outlines(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
     return [
-        Line(
-            points=points,
-            colour=to_rgba(palette.accent),
-            width=1.5 * scale,
-            closed=True,
-        )
+        Line(points=points, colour=to_rgba(palette.accent), width=1.5 * scale, closed=True)
         for points in scene_outlines(shown)
     ]
 

@@ -204,53 +204,19 @@ def _is_moving(session: Session) -> bool:
 
 def _state(session: Session) -> tuple[object, ...]:
     """Return all state that parts of the window show, except the clock."""
-    project = session.project
+    project, display = session.project, session.display
     own = (
-        *(
-            session.dialogs.current,
-            session.settings.preferences,
-            session.display.overlays,
-            session.display.compare_view,
-            session.display.tint,
-        ),
-        *(
-            session.tools.mode,
-            session.display.screen,
-        ),
-        *(
-            session.export.run,
-            session.tutorial.state,
-            session.display.curve_kind,
-            bool(session.jobs.kinds),
-            project,
-        ),
+        *(session.dialogs.current, session.settings.preferences, display.overlays),
+        *(display.compare_view, display.tint, display.screen, display.curve_kind),
+        *(session.tools.mode, session.export.run, session.tutorial.state),
+        *(bool(session.jobs.kinds), project),
     )
     if project is None:
         return own
+    chosen, listed = project.selection, project.layer_list
     return (
         *own,
-        *(
-            project.document,
-            project.history.position,
-            project.preview_pose,
-            project.selection.active,
-        ),
-        *(
-            project.document,
-            project.history.position,
-            project.history.preview_pose,
-            project.selection.active,
-        ),
-        *(
-            project.selection.handles,
-            project.selection.channel,
-            project.selection.other_layers,
-            project.layer_list.toggled_rows,
-            project.layer_list.solo,
-        ),
-        *(
-            project.viewport.view,
-            project.timeline.playhead,
-            tuple(project.selection.keys.items()),
-        ),
+        *(project.document, project.history.position, project.preview_pose, chosen.active),
+        *(chosen.handles, chosen.channel, chosen.other_layers, tuple(chosen.keys.items())),
+        *(listed.toggled_rows, listed.solo, project.viewport.view, project.timeline.playhead),
     )

@@ -40,26 +40,19 @@ def _is_busy(session: Session) -> bool:
     # The system's dialog has its own input. Its answer is polled.
     asks_system = session.dialogs.uses_system and isinstance(session.dialogs.current, FileDialog)
     is_working = bool(session.jobs.kinds) or session.export.run is not None
-    is_working |= project is not None and bool(
-        project.layer_setup.stale or project.pending.deferred
-    )
+    if project is not None:
+        is_working |= bool(project.layer_setup.stale or project.pending.deferred)
     return is_moving or is_working or asks_system or bool(session.notices.toasts)
 
 
 def _awaits_in_between(session: Session) -> bool:
     """Return whether a placeholder stands for an in-between, and nothing else is active."""
     project = session.project
-    if (
-        project is None
-        or project.timeline.playhead.since is not None
-        or session.tools.active is not None
-    ):
+    if project is None or project.timeline.playhead.since is not None:
         return False
-    if (
-        session.export.run is not None
-        or session.notices.toasts
-        or session.dialogs.current is not None
-    ):
+    if session.tools.active or session.export.run:
+        return False
+    if session.notices.toasts or session.dialogs.current:
         return False
     if {frame_update.GLIMPSING, frame_update.SKETCHING}.isdisjoint(session.jobs.kinds):
         return False

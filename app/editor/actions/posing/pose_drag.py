@@ -11,12 +11,7 @@ from app.editor.actions.posing.pose_commit import POSING, drop_drag
 from app.editor.actions.posing.pose_solver import finish_drag, step_pose_solver
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work.drag_session import (
-    DragSession,
-    DragStart,
-    TargetChange,
-    absolute_targets,
-)
+from app.editor.work.drag_session import DragSession, DragStart, TargetChange, absolute_targets
 from app.texts import _
 from engine.deform import BoundedPull
 

@@ -9,11 +9,7 @@ from app.editor.overlay_shapes import AreaShape, ColourRole, LineShape, OverlayS
 from app.editor.parts.tools import Hint
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.tools.edit_tools.cut_out_tools import (
-    brush_ring,
-    brush_stroke,
-    is_brush_shown,
-)
+from app.editor.tools.edit_tools.cut_out_tools import brush_ring, brush_stroke, is_brush_shown
 from app.editor.tools.tool import PointerHit, Tool, handle_places
 from app.texts import _
 

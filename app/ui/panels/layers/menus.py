@@ -28,10 +28,7 @@ from app.editor.layering.layer_list import (
 from app.editor.layering.layer_selection import select_layers, solo_layers
 from app.editor.layering.parenting import delete_layers
 from app.editor.layering.pictures import ask_replacement_picture, make_posable, make_still
-from app.editor.layering.switches import (
-    create_switch,
-    key_switch,
-)
+from app.editor.layering.switches import create_switch, key_switch
 from app.texts import _, ngettext
 from app.ui.shortcuts.keys import shown_keys
 from app.ui.style.widgets import menu_entry
