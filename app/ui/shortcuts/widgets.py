@@ -42,13 +42,9 @@ def draw_action_main_button(session: Session, look: Look, spec: ActionSpec) -> l
 
 
 def draw_action_button(
-    session: Session, look: Look, spec: ActionSpec, icon: str = "", reason: str | None = None
+    session: Session, look: Look, spec: ActionSpec, icon: str = ""
 ) -> list[Action]:
-    """Draw the square button of a named action, with its icon or the given one.
-
-    The panel may give another reason why it is disabled.
-    """
-    reason = spec.disabled_reason(session) or reason
+    """Draw the square button of a named action, with its icon or the given one."""
     is_pressed = icon_button(
         look,
         icon_glyph(icon or spec.icon),
@@ -56,7 +52,7 @@ def draw_action_button(
         spec.hint or spec.label,
         keys=shown_keys(spec),
         active=spec.is_active(session),
-        reason=reason,
+        reason=spec.disabled_reason(session),
     )
     look.note_place(spec.label)
     return [spec.action] if is_pressed else []

@@ -85,12 +85,7 @@ def _recording_speed(session: Session, look: Look) -> list[Action]:
 def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]:
     actions = draw_action_button(session, look, playback.PREVIOUS_KEY)
     imgui.same_line(0, TIGHT * look.em)
-    frame = playback.current_frame(session, project)
-    if project.selected_track is None:
-        frame = playback.edited_frame(session, project)
-    is_free = project.unkeyed_pose is not None or not playback.is_frame_keyed(project, frame)
-    reason = None if is_free else _("This frame has a key already.")
-    actions += draw_action_button(session, look, keys.insert_key_in_row, reason=reason)
+    actions += draw_action_button(session, look, keys.insert_key_in_row)
     if project.unkeyed_pose is not None:
         high = imgui.get_item_rect_max()
         imgui.get_window_draw_list().add_circle_filled(

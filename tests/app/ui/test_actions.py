@@ -5,9 +5,11 @@ import re
 import pytest
 from imgui_bundle import imgui
 
+from app.document import MARKER, Channel
 from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
 from app.editor.actions.posing.motion_presets import preset_setup
+from app.editor.actions.timing import keys
 from app.editor.actions.tracking import recording
 from app.editor.poses import copying
 from app.editor.tools import move_tool, tool_pointer
@@ -54,7 +56,7 @@ DISABLED = {  # while two handles of a bar with two keys are selected
         "Discard recording",
         "Play all frames",
     ),
-    *("Bake repeats", "Stop repeating", "End guide", "Import log"),
+    *("Insert key", "Bake repeats", "Stop repeating", "End guide", "Import log"),
 }
 HANDLES = {
     *(
@@ -195,3 +197,14 @@ def test_greyed_buttons_of_panels_show_their_reasons(window, loose, monkeypatch)
         *("There are no strokes.", "Brush over a part or draw a bone first."),
         "Change a setting above first.",
     }
+
+
+@pytest.mark.usefixtures("loose")
+def test_the_row_of_markers_says_how_they_are_added(window):
+    session, project = window.session, window.session.project
+    keys.add_marker(session, 2)
+    project.selection.select_channel(Channel(MARKER))
+    before = project.document
+    keys.insert_key_in_row_at(session, 6)
+    assert project.document is before
+    assert session.notices.toasts[-1].text.startswith("Use “Add marker” for markers")

@@ -12,8 +12,9 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.solving import Rig, fit_shown_pose
-from app.texts import _
+from app.texts import N_, _
 
+IS_KEYED = N_("Frame {frame} has a key already. Drag a handle to change it.")
 INSERTING = JobKind(_("Inserting a key"), _("The key could not be inserted"), "hand")
 
 
@@ -49,8 +50,7 @@ def insert_key_at(
         take = partial(_insert, session, project, clip, frame, gesture)
         solve_nearest_pose(session, project, clip, frame, take, kind=INSERTING)
     else:
-        text = _("Frame {frame} has a key already. Drag a handle to change it.")
-        session.notices.show(text.format(frame=frame))
+        session.notices.show(_(IS_KEYED).format(frame=frame))
 
 
 def solve_nearest_pose(

@@ -26,7 +26,7 @@ from app.document import (
 from app.editor.action import do
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import ActionSpec, named_action, unless
-from app.editor.actions.posing.inserting import insert_key
+from app.editor.actions.posing.inserting import IS_KEYED, insert_key
 from app.editor.actions.timing import channel_keys, tracks
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -55,7 +55,25 @@ def edit_timing(
         project.timeline.seek(frame, session.clock())
 
 
-@named_action(_("Insert key"), "I", icon="DIAMOND", hint=_("Set a key with the current pose"))
+def _insert_disabled_reason(session: Session, project: Project) -> str | None:
+    frame = playback.current_frame(session, project)
+    if project.selected_track is None:
+        frame = playback.edited_frame(session, project)
+    if project.unkeyed_pose is not None or project.selection.other_layers:
+        return None
+    if project.channel.kind in (MARKER, PARENT):
+        return _("Use “Add marker” for markers, and the Layers tab for parents.")
+    is_keyed = playback.is_frame_keyed(project, frame)
+    return _(IS_KEYED).format(frame=frame) if is_keyed else None
+
+
+@named_action(
+    _("Insert key"),
+    "I",
+    icon="DIAMOND",
+    hint=_("Set a key with the current pose"),
+    why_disabled=_insert_disabled_reason,
+)
 @with_project
 def insert_key_in_row(session: Session, project: Project) -> None:
     """Insert a key at the present frame into the selected channel, with its present value."""
@@ -64,14 +82,18 @@ def insert_key_in_row(session: Session, project: Project) -> None:
         insert_key(session)
     elif project.selected_track is not None:
         tracks.key_handles_at_playhead(session, (project.selected_track,))
-    elif channel.kind not in (MARKER, PARENT):
+    else:
         channel_keys.insert_channel_key(session, channel)
 
 
 def insert_key_in_row_at(session: Session, frame: int) -> None:
-    """Put the playhead on a frame, and insert a key into the selected channel."""
+    """Put the playhead on a frame, and insert a key into the selected channel, or say why not."""
     playback.scrub(session, frame)
-    insert_key_in_row(session)
+    reason = insert_key_in_row.disabled_reason(session)
+    if reason is None:
+        insert_key_in_row(session)
+    else:
+        session.notices.show(reason)
 
 
 @with_project
