@@ -73,7 +73,7 @@ class Session(Revised):
     is_quitting: bool = False
 
     def __post_init__(self) -> None:
-        self.notices = Notices(clock=self.clock)
+        self.notices = Notices(now=self.clock)
 
     def put_project(self, project: Project | None) -> None:
         """Show a project, with the tool that poses; None shows the welcome view."""

@@ -230,7 +230,7 @@ def random_state(rng: np.random.Generator, session: Session, project: Project) -
         each.id for each in document.layers if rng.random() < 0.5
     )
     if layer.tracks and rng.random() < 0.5:
-        project.selected_track = _any(rng, layer.tracks).handles[0]
+        project.selection.select_track(layer, _any(rng, layer.tracks).handles[0])
     project.viewport.is_camera_view = bool(document.camera) and bool(rng.integers(2))
     project.timeline.playhead = replace(
         project.timeline.playhead, frame=int(rng.integers(LAST + 1))

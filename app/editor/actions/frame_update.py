@@ -142,7 +142,7 @@ def is_due_in_time(session: Session) -> bool:
         or project.layer_setup.stale is not None
         or project.timeline.moved_at > -inf
         or bool(project.pending.changes or project.pending.deferred)
-        or session.tools.active is not None
+        or session.tools.active_tool is not None
     )
 
 
@@ -161,7 +161,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         *(playback.current_frame(session, project), project.timeline.playhead.since is None),
         *(session.jobs.kinds, session.jobs.delivered, session.settings.prepares_ahead),
         *(session.display.overlays, session.display.compare_view, session.export.frame_box),
-        *(project.viewport.awaits_extent, session.tools.active, session.tools.mode == "record"),
+        *(project.viewport.awaits_extent, session.tools.active_tool, session.tools.mode),
         *(project.selected_track, take, take and (take.is_over, len(take.samples))),
         *(project.unkeyed_pose, tuple(project.pending.changes)),
         drag and (drag.is_held, drag.preview),

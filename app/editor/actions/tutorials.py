@@ -100,7 +100,7 @@ def update_tutorial(session: Session) -> None:
             session.tutorial.show(_attached(session, guide))
     elif guide.project is not project:
         session.tutorial.end()
-    elif session.tools.active is None and project.timeline.gesture is None:
+    elif session.tools.active_tool is None and project.timeline.gesture is None:
         # The next step must not disturb a drag.
         session.tutorial.show(_advanced(session, project, guide))
 

@@ -1,7 +1,7 @@
 """The clipboard: copied keys and poses."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from app.document import BaseKey, Channel, Keyframe, Layer, Track, TrackKey
@@ -51,10 +51,3 @@ class Clipboard(Revised):
     ) -> None:
         """Put keys on the clipboard, in place of all earlier ones."""
         self.poses, self.tracks, self.channels = tuple(poses), tuple(tracks), tuple(channels)
-
-    def change_keys(self, change: Callable[[Layer, Keyframe], Keyframe]) -> None:
-        """Change each copied pose key of a layer."""
-        self.poses = tuple(
-            replace(each, keys=tuple(change(each.layer, key) for key in each.keys))
-            for each in self.poses
-        )

@@ -30,7 +30,7 @@ class Toast:
 class Notices(Revised):
     """The notices that are shown."""
 
-    clock: Callable[[], float]
+    now: Callable[[], float]  # the clock
     toasts: list[Toast] = field(default_factory=list)
 
     def show(
@@ -54,7 +54,7 @@ class Notices(Revised):
         toast = Toast(
             text=text,
             tone=tone,
-            born=self.clock(),
+            born=self.now(),
             place=next(place for place in count() if place not in taken),
             topic=topic,
             details=details,

@@ -63,7 +63,7 @@ class ToolState(Revised):
 
     mode: ToolMode = "pose"  # the selected tool
     last_motion_setup: MotionSetup | None = None  # the last draft that was left or applied
-    active: ActiveTool | None = None  # the tool that has the pointer
+    active_tool: ActiveTool | None = None  # the tool that has the pointer
     strength: float = 10.0  # factor of the stiffness brush
     softness: float = 0.5  # part of the stiffness brush's radius over which it fades
     recording_speed: float = 1.0  # of the animation's speed
@@ -116,11 +116,11 @@ class ToolState(Revised):
 
     def begin(self, tool: ActiveTool | None) -> None:
         """Give the pointer to a tool."""
-        self.active = tool
+        self.active_tool = tool
 
     def end(self) -> ActiveTool | None:
         """Take the pointer from the active tool, and return this tool."""
-        tool, self.active = self.active, None
+        tool, self.active_tool = self.active_tool, None
         return tool
 
     def set_brush_strength(self, strength: float) -> None:
@@ -157,4 +157,4 @@ class ToolState(Revised):
 
     def reset(self) -> None:
         """Go back to posing, as for another project."""
-        self.mode, self.active, self.last_motion_setup = "pose", None, None
+        self.mode, self.active_tool, self.last_motion_setup = "pose", None, None

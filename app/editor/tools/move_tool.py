@@ -70,7 +70,7 @@ class MoveTool(PoseTool):
 )
 def toggle_move_tool(session: Session) -> None:
     """Select the move tool, or the pose tool if the move tool is selected."""
-    if session.tools.active is None:
+    if session.tools.active_tool is None:
         session.tools.toggle("move")
 
 

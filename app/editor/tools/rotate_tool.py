@@ -153,7 +153,7 @@ class RotateTool(Tool):
         cls, session: Session, project: Project, spot: PointerHit
     ) -> Iterable[OverlayShape]:
         """Return the ring around the only selected handle, with a knob at the shape's top."""
-        found = find_ring(session, project) if session.tools.active is None else None
+        found = find_ring(session, project) if session.tools.active_tool is None else None
         return () if found is None else _ring(*found, spot.em, is_hot=spot.on_ring)
 
     def shapes(self, _place: complex, em: float) -> Iterable[OverlayShape]:

@@ -25,15 +25,15 @@ def move_pointer_in_steps(session: Session, place: complex) -> None:
 
 
 def _move_pointer(session: Session, place: complex, *, snaps: bool) -> None:
-    if session.tools.active:
+    if session.tools.active_tool:
         session.tools.snap(snaps=snaps)
-        session.tools.active.move(session, place)
+        session.tools.active_tool.move(session, place)
 
 
 def type_in_tool(session: Session, characters: str) -> None:
     """Pass characters typed during a drag to the active tool."""
-    if session.tools.active:
-        session.tools.active.type(session, characters)
+    if session.tools.active_tool:
+        session.tools.active_tool.type(session, characters)
 
 
 def release_pointer(session: Session, place: complex) -> None:

@@ -39,7 +39,7 @@ def _press_shortcuts(session: Session) -> list[Action]:
     If none is possible, a notice says why. Esc says nothing, since it belongs to many actions.
     """
     project, pressed, reasons = session.project, dict[int, Action](), dict[int, str]()
-    is_dragging = session.tools.active is not None or (
+    is_dragging = session.tools.active_tool is not None or (
         project is not None and project.timeline.gesture is not None
     )
     for spec in dict.fromkeys((*ENDED_BY_ESC, *ACTIONS.values())):

@@ -119,8 +119,8 @@ def draw_viewport_panel(
     actions += _navigate(screen)
     actions += handles.actions
     actions += follow_pointer(session, look, screen)
-    tool = session.tools.active or pointed_tool(session, project, spot)
-    if tool is not None and tool.cursor in CURSORS and (is_over or session.tools.active):
+    tool = session.tools.active_tool or pointed_tool(session, project, spot)
+    if tool is not None and tool.cursor in CURSORS and (is_over or session.tools.active_tool):
         imgui.set_mouse_cursor(CURSORS[tool.cursor])
     if handles.hovered != session.tools.hovered:
         actions.append(do(tool_pointer.hover_handle, handles.hovered))
@@ -212,7 +212,7 @@ def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> 
         if is_hovered_or_held():
             hovered, at_target = identity, what == "target"
         pressed = pressed or is_pressed()
-        if session.tools.active is None and imgui.is_item_clicked(imgui.MouseButton_.right):
+        if session.tools.active_tool is None and imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of handle {identity}")
             if identity not in screen.project.selection.handles:
                 actions.append(do(editing.select_handles, frozenset({identity})))
@@ -224,7 +224,7 @@ def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> 
 
 def _canvas_menu(session: Session, *, is_pointed: bool) -> list[Action]:
     """Draw the canvas menu if it is open. A right click on the canvas opens it."""
-    is_free = is_pointed and session.tools.active is None and not session.tools.is_cutting
+    is_free = is_pointed and session.tools.active_tool is None and not session.tools.is_cutting
     if is_free and imgui.is_mouse_clicked(imgui.MouseButton_.right):
         imgui.open_popup("menu of the canvas")
     actions: list[Action] = []

@@ -50,7 +50,7 @@ def _awaits_in_between(session: Session) -> bool:
     project = session.project
     if project is None or project.timeline.playhead.since is not None:
         return False
-    if session.tools.active or session.export.run:
+    if session.tools.active_tool or session.export.run:
         return False
     if session.notices.toasts or session.dialogs.current:
         return False

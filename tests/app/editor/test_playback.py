@@ -32,7 +32,7 @@ def test_hand_on_a_track_comes_first_only_while_it_drags(session, monkeypatch):
     project = session.project
     monkeypatch.setattr(type(project), "selected_track", 0)
     assert not is_track_drag_pending(session, project)
-    session.tools.active = object()
+    session.tools.active_tool = object()
     assert is_track_drag_pending(session, project)
     monkeypatch.setattr(type(project), "selected_track", None)
     assert not is_track_drag_pending(session, project)

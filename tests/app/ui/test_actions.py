@@ -77,7 +77,7 @@ BRUSH = {"Smaller brush", "Larger brush", "Back to posing"}
 
 def drag_handle(session):
     tool_pointer.press_pointer(session, PointerHit(place=0j, handle=1))
-    assert session.tools.active is not None
+    assert session.tools.active_tool is not None
 
 
 # The actions that a state makes possible, and those that it makes impossible.

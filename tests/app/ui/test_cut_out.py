@@ -510,7 +510,7 @@ def test_a_line_of_the_knife_is_shown_while_it_is_drawn_and_can_be_cancelled(win
         robot.mouse_down()
         for place in FROM_BELOW[1:]:
             robot.mouse_move_to_pos(window.point(place))
-        shown.append(window.session.tools.active.shapes(0j, 1.0))
+        shown.append(window.session.tools.active_tool.shapes(0j, 1.0))
         robot.key_press(window.Key.escape)
         robot.mouse_up()
 

@@ -363,7 +363,7 @@ def test_a_box_selects_the_handles_in_it(window, bar):
     assert bar.selection.handles == {1}
     span(left - side + above, right + side - above)
     assert bar.selection.handles == {0, 1}
-    assert session.tools.active is None
+    assert session.tools.active_tool is None
     assert len(bar.layer.handles) == 2
 
 
@@ -450,7 +450,7 @@ def test_a_drag_is_taken_back_and_the_next_one_goes_on(window, bar, by):
             robot.mouse_down(1)
             robot.mouse_up(1)
         assert bar.document is before
-        assert session.tools.active is None
+        assert session.tools.active_tool is None
         robot.mouse_move_to_pos(window.point(place + 90j))
         robot.mouse_up(0)
 

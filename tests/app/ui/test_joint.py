@@ -186,7 +186,7 @@ def test_the_layer_under_the_pointer_is_marked(window, scene):
 def test_esc_and_a_drop_beside_all_layers_leave_it_as_it_was(window, scene, drag):
     before = scene.document
     drag(HIP, SHOULDER, gives_up=True)
-    assert window.session.tools.active is None
+    assert window.session.tools.active_tool is None
     drag(HIP, BESIDE)
     assert scene.document is before
     assert "over another layer" in window.session.notices.toasts[-1].text

@@ -126,7 +126,7 @@ def test_a_drag_that_goes_on_while_the_window_is_to_close_is_kept(window, bar, s
         robot.yield_(2)
 
     window.run(play)
-    assert window.session.tools.active is None
+    assert window.session.tools.active_tool is None
     saving.request_quit(window.session)  # once more
     answer(window, "Save")
     window.settle()

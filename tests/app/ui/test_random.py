@@ -51,6 +51,7 @@ from app.document.commands.keys import (
 from app.document.commands.layers import layer_commands
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
+from app.editor.action import Action
 from app.editor.actions import editing, frame_update, playback, viewing
 from app.editor.actions.layer_setup import (
     cut_out_editing,
@@ -297,7 +298,7 @@ class Walk:
 
     def act(self, verb, *arguments: object) -> None:
         """Do something as a panel would ask for it."""
-        self.note(verb.__name__, *arguments)
+        self.note(Action(verb).name, *arguments)
         self.window.act(verb, *arguments)
 
     def edit(self, command) -> None:

@@ -84,7 +84,7 @@ def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, betwe
         before - 150 / width, abs=3 / width
     )
     assert divider(window)[0] == pytest.approx(x - 150, abs=3)
-    assert session.tools.active is None
+    assert session.tools.active_tool is None
     assert len(between.layer.handles) == 2
 
 

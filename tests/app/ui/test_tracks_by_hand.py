@@ -419,7 +419,7 @@ def test_the_end_of_the_range_ends_a_recording_and_other_keys_stay(window, brief
     frames = [key.frame for key in track.keys]
     assert track.keys[0] == taken[0]
     assert frames[-1] == last
-    assert window.session.tools.active is None
+    assert window.session.tools.active_tool is None
     assert brief.timeline.playhead.speed == 1.0
 
 

@@ -36,7 +36,7 @@ def test_forty_and_enter_move_a_handle_by_forty_pixels(window, bar):
         robot.yield_(2)
         assert "type a number of pixels" in window.session.tools.hint.lower()
         robot.key_press(int(window.Key.enter))
-        assert window.session.tools.active is None
+        assert window.session.tools.active_tool is None
         robot.mouse_move_to_pos(window.point(start + 60j))
         robot.mouse_up(0)
 

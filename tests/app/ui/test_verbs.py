@@ -31,9 +31,8 @@ def put(window, project, rng):
     session = window.session
     for kind in session.jobs.kinds:
         session.jobs.drop(kind)
-    session.dialogs.current = session.export.run = session.tutorial.state = session.tools.active = (
-        None
-    )
+    session.dialogs.current = session.export.run = session.tutorial.state = None
+    session.tools.active_tool = None
     session.is_quitting, session.notices.toasts = False, []
     saving.set_project(session, own(project))
     random_state(rng, session, session.project)

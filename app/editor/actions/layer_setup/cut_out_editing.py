@@ -40,7 +40,7 @@ DROP = 2  # radius in pixels around a picked place whose colours count
 
 def toggle_cut_tool(session: Session, tool: CutTool | None) -> None:
     """Select a cut-out tool; None, or the selected tool again, selects the pose tool."""
-    if session.tools.active is None:
+    if session.tools.active_tool is None:
         session.tools.toggle(tool or "pose")
         if session.tools.is_cutting:
             session.display.focus_panel(PANEL)

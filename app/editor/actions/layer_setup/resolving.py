@@ -120,7 +120,7 @@ def rebuild_changed_cut_out(session: Session, project: Project) -> None:
     """Rebuild the domain after a change of the cut-out, once the brush rests; once a frame."""
     stale = project.stale_layer
     waited = project.layer_setup.note_stale(stale, session.clock())
-    is_busy = session.tools.active is not None or project.pending.changes
+    is_busy = session.tools.active_tool is not None or project.pending.changes
     if stale is not None and not is_busy and waited >= REST:
         resolver = KeyResolver(before=stale, bounds=stale.bounds, meshing=stale.meshing)
         _go_on(session, project, resolver)

@@ -34,7 +34,7 @@ SUGGESTED = (
 @with_project
 def toggle_stiffness_tool(session: Session, project: Project, tool: StiffnessTool | None) -> None:
     """Select a stiffness tool; None, or the selected tool again, selects the pose tool."""
-    if session.tools.active is None:
+    if session.tools.active_tool is None:
         playback.stop_playback(session)
         session.tools.toggle(tool or "pose")
         if project.layer_setup.brush is None:

@@ -24,7 +24,9 @@ Work = Callable[[], CorrectionUpdate]
 def is_track_drag_pending(session: Session, project: Project) -> bool:
     """Return whether a handle is dragged on its track; only the shown frame is computed then."""
     is_recorded = project.timeline.recording is not None and not project.timeline.recording.is_over
-    return is_recorded or (session.tools.active is not None and project.selected_track is not None)
+    return is_recorded or (
+        session.tools.active_tool is not None and project.selected_track is not None
+    )
 
 
 def next_correction_jobs(session: Session, project: Project) -> Iterator[Job]:

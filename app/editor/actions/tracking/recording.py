@@ -104,7 +104,7 @@ def stop_recording(session: Session, project: Project, *, has_moved: bool = True
     take = project.timeline.recording
     if take is None or take.is_over:
         return
-    if session.tools.active is take.gesture:
+    if session.tools.active_tool is take.gesture:
         session.tools.end()
     take.is_over, take.has_moved = True, has_moved
     project.timeline.stop_recording()

@@ -174,7 +174,7 @@ def _cut(project: Project, points: Sequence[complex]) -> LineShape:
 
 def is_brush_shown(session: Session, spot: PointerHit) -> bool:
     """Return whether a brush shows its ring before a press."""
-    return spot.is_over and session.tools.active is None
+    return spot.is_over and session.tools.active_tool is None
 
 
 def brush_role(keeps: bool | None) -> ColourRole:  # noqa: FBT001 - the only argument

@@ -53,7 +53,7 @@ class JointTool(Tool):
         for name, place in places.items():
             yield KnobShape(centre=place, radius=DOT * spot.em, role=joint_role(name))
         near = find_joint_near(session, project, spot.place)
-        hot = near if session.tools.active is None else draft.selected_joint
+        hot = near if session.tools.active_tool is None else draft.selected_joint
         for name, place in places.items():
             if name in {draft.selected_joint, hot}:
                 yield CircleShape(centre=place, radius=1.7 * DOT * spot.em, role="text", width=0.1)

@@ -15,7 +15,7 @@ AXES = ((imgui.Key.x, "x"), (imgui.Key.y, "y"))
 
 def follow_pointer(session: Session, look: Look, screen: ScreenMapping) -> list[Action]:
     """Continue the gesture at the pointer. End it when the button is released."""
-    gesture = session.tools.active
+    gesture = session.tools.active_tool
     if gesture is None:
         return []
     if imgui.is_key_pressed(imgui.Key.escape) or imgui.is_mouse_clicked(imgui.MouseButton_.right):

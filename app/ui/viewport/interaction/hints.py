@@ -30,8 +30,10 @@ KEYS = {"ctrl": (CTRL,), "shift": (SHIFT,), "alt": (ALT,), "ctrl+shift": (SHIFT,
 def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
     """Return the possible gestures at the pointer."""
     project = screen.project
-    if session.tools.active is not None:
-        return _sentence([*map(_format_hint, session.tools.active.active_hints), _("Esc cancels")])
+    if session.tools.active_tool is not None:
+        return _sentence(
+            [*map(_format_hint, session.tools.active_tool.active_hints), _("Esc cancels")]
+        )
     if not session.tools.is_cutting and project.timeline.playhead.since is not None:
         return _("Space stops")
     if session.tools.is_posing and not session.display.overlays.handles:

@@ -93,7 +93,7 @@ class Callout:
     ) -> None:
         """Choose the card's place, unless the card already has one for this step."""
         project = screen.project
-        if self._key and (session.tools.active or project.timeline.gesture):
+        if self._key and (session.tools.active_tool or project.timeline.gesture):
             return
         boxes = lead.uncovered
         corners = [corner for box in (*rooms, *boxes) for corner in box]

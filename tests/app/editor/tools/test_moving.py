@@ -102,7 +102,7 @@ def test_with_the_tool_it_does_so_from_anywhere(session, at):
     assert len(session.project.layer.handles) == 2
     move_tool.return_to_posing(session)
     tool_pointer.press_pointer(session, PointerHit(place=LEFT, handle=0))
-    assert type(session.tools.active).__name__ == "PoseTool"
+    assert type(session.tools.active_tool).__name__ == "PoseTool"
 
 
 def test_ctrl_click_still_sets_the_anchor(session):

@@ -84,7 +84,7 @@ ON_RING = PointerHit(place=LEFT + 20, on_shape=True, on_ring=True)
 )
 def test_a_press_is_for_one_tool(session, spot, name):
     tool_pointer.press_pointer(session, spot)
-    assert type(session.tools.active).__name__ == name
+    assert type(session.tools.active_tool).__name__ == name
 
 
 @pytest.mark.parametrize(("auto_key", "most_keys"), [(True, 3), (False, 1)])
@@ -100,11 +100,11 @@ def test_whatever_a_press_began_is_taken_back_wholly(session, auto_key, most_key
         for held in flags:
             before = state(project)
             drag(session, replace(spot, **held), spot.place + 6, spot.place + 9j)
-            assert session.tools.active is not None, (spot, held)
+            assert session.tools.active_tool is not None, (spot, held)
             tool_pointer.cancel_tool(session)
             frames(session)
             assert state(project) == before, (spot, held)
-            assert session.tools.active is None
+            assert session.tools.active_tool is None
             # What could be done again still can.
             assert project.history.redo_label == "Set frames per second"
             # The hand goes on, and lets go.
@@ -159,7 +159,7 @@ def test_selected_handles_are_pulled_together(session):
 def test_a_turn_begins_where_the_pointer_leaves_the_handle(session):
     end = RIGHT + 15j * np.exp(0.2j)
     drag(session, replace(AT_RIGHT, alt=True), RIGHT + 15j, end)
-    assert session.tools.active.swept == pytest.approx(0.2)
+    assert session.tools.active_tool.swept == pytest.approx(0.2)
     assert tags(session) == ["+11°"]
     tool_pointer.release_pointer(session, end)
     settle(session)
@@ -197,7 +197,7 @@ def test_a_box_selects_what_is_in_it(session, shift):
         editing.select_handles(session, frozenset({0}))
         tool_pointer.press_pointer(session, PointerHit(place=corner, shift=shift))
         tool_pointer.move_pointer(session, opposite)
-        area, edge = session.tools.active.shapes(opposite, 1.0)
+        area, edge = session.tools.active_tool.shapes(opposite, 1.0)
         assert area.points == edge.points
         assert area.points[::2] == [corner, opposite]
         tool_pointer.release_pointer(session, opposite)
@@ -240,14 +240,14 @@ def test_there_is_a_hint_wherever_something_can_be_done(session, spot):
         held = dict.fromkeys(filter(None, hint.key.split("+")), True)
         there = ON_RING if "its ring" in hint.text else spot
         tool_pointer.press_pointer(session, replace(there, **held))
-        named = type(session.tools.active)
+        named = type(session.tools.active_tool)
         assert hint in named.hints(session, session.project, spot)
         tool_pointer.cancel_tool(session)
 
 
 def tags(session):
     """Return the texts that the active tool shows."""
-    shapes = session.tools.active.shapes(0j, 1.0)
+    shapes = session.tools.active_tool.shapes(0j, 1.0)
     return [shape.text for shape in shapes if isinstance(shape, TagShape)]
 
 

@@ -142,7 +142,7 @@ def _accept(session: Session, project: Project, task: MotionJob, giving: MotionS
     if unkeyed is not None and unkeyed.layer == before.id:
         project.history.set_preview_pose(None, gesture=gesture)
     _show_unreached_joints(session, giving)
-    if session.tools.active is None:
+    if session.tools.active_tool is None:
         playback.scrub(session, giving.applied.first)
         playback.toggle_play(session)
 

@@ -49,7 +49,7 @@ def begin_motion_setup(session: Session, project: Project) -> None:
     if (
         session.tools.motion_setup is not None
         or project.motion_job is not None
-        or session.tools.active is not None
+        or session.tools.active_tool is not None
     ):
         return
     playback.stop_playback(session)
