@@ -23,6 +23,9 @@ POWER = 3  # grading at corners: arc length is the third power of the parameter
 PANEL_PER_CAGE = 2.0
 PANEL_PER_GAP = 8.0
 FINEST = 2.0**-20  # of an edge: shorter panels are not cut
+# Polynomials are checked at so many places between two nodes, and at a panel's ends. While they
+# exceed limits by more than SLIGHT, the limits are tightened by so many times the excess.
+BETWEEN, SLIGHT, TIGHTER, MOST_TIGHTENINGS = 3, 1e-5, 1.2, 16
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -113,6 +116,55 @@ class Panels:
             starts=np.zeros(1, dtype=np.intp),
         )
 
+    def interpolate(self, values: Floats) -> Floats:
+        """Return polynomials through values (p, NODES) at `checked_places`, (p, c)."""
+        _, to_checked = checked_places()
+        result: Floats = values @ to_checked.T
+        return result
+
+    def fit_within(
+        self, values: Floats, low: Floats, high: Floats, shifts: Floats
+    ) -> tuple[Floats, float]:
+        """Find polynomials r on the panels with low ≤ values + r ≤ high at the checked places.
+
+        A clipped function has kinks, and polynomials through its nodes exceed the limits beside a
+        kink. On such a panel the limits are tightened by the excess, and less and less towards the
+        far ends of both neighbours, so that r is continuous along a loop. r is also continuous in
+        all arguments, and 0 where the values are within the limits.
+
+        Parameters
+        ----------
+        values, low, high : float64, shape (p, c)
+            At `checked_places`.
+        shifts : float64, shape (p,)
+            Added to the values before they are clipped.
+
+        Returns
+        -------
+        fitted : float64, shape (p, NODES)
+            r at the nodes.
+        excess : float
+            How far values + r still are outside the limits.
+        """
+        tau, _ = gauss_legendre()
+        along = np.where(self.forward[:, None], tau, 1.0 - tau)
+        own, least, most = (each[:, :NODES] for each in (values, low, high))
+        wanted, middle = own + shifts[:, None], (least + most) / 2
+        following, previous = self.next_panels, self.previous_panels
+        spare = np.zeros(len(self))
+        for _ in range(MOST_TIGHTENINGS):
+            ends = np.maximum(spare, spare[following])
+            starts = ends[previous]
+            less = starts[:, None] + along * (ends - starts)[:, None]
+            least_now, most_now = np.minimum(least + less, middle), np.maximum(most - less, middle)
+            fitted = np.clip(wanted, least_now, most_now) - own
+            reached = values + self.interpolate(fitted)
+            excess = np.maximum(reached - high, low - reached).max(axis=1)
+            if excess.max() <= SLIGHT:
+                break
+            spare += TIGHTER * np.maximum(excess, 0.0)
+        return fitted, max(float(excess.max()), 0.0)
+
     def __len__(self) -> int:
         return len(self.origin)
 
@@ -136,6 +188,13 @@ class Panels:
     def nodes(self) -> Complexes:
         """Gauss-Legendre nodes, (p, NODES)."""
         result: Complexes = self.origin[:, None] + self.span[:, None] * self.arcs()
+        return result
+
+    @property
+    def checked(self) -> Complexes:
+        """The points (p, c) of `checked_places` on each panel."""
+        tau, _ = checked_places()
+        result: Complexes = self.origin[:, None] + self.span[:, None] * tau ** self.power[:, None]
         return result
 
     def arcs(self) -> Floats:
@@ -170,6 +229,22 @@ def legendre_matrices() -> tuple[Floats, Floats]:
     by_degree = np.polynomial.legendre.legder(np.eye(NODES), scl=2.0)
     derivatives = np.polynomial.legendre.legval(2 * tau - 1, by_degree).T
     return freeze(to_legendre), freeze(derivatives @ to_legendre)
+
+
+@cache
+def checked_places() -> tuple[Floats, Floats]:
+    """Return the nodes of [0, 1], then both ends and places between the nodes, (c,).
+
+    The matrix (c, NODES) leads from values at the nodes to those of their polynomials there.
+    """
+    tau, _ = gauss_legendre()
+    shares = np.arange(1, BETWEEN + 1) / (BETWEEN + 1)
+    gaps = (tau[:-1, None] + np.diff(tau)[:, None] * shares).ravel()
+    between = np.concatenate([[0.0], gaps, [1.0]])
+    to_legendre, _ = legendre_matrices()
+    to_between = np.polynomial.legendre.legvander(2 * between - 1, NODES - 1) @ to_legendre
+    places = np.concatenate([tau, between])
+    return freeze(places), freeze(np.concatenate([np.eye(NODES), to_between]))
 
 
 @cache

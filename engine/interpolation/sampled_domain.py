@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Indices, as_points, freeze, nbytes_of
+from engine.dirichlet import Extension
 from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, deepest_point, diameter, require_inside
 from engine.interpolation.added.hole_closer import HoleCloser
@@ -31,6 +32,10 @@ ONE_ANCHOR = (
 OTHER_OUTLINE = (
     "The Hilbert transform is for an outline of {others} vertices, but the points have an "
     "outline of {own}. Build the transform again for this outline."
+)
+OTHER_POINTS = (
+    "The Hilbert transform is prepared for other points. Prepare it for the nodes of the sites' "
+    "paths."
 )
 NO_SAMPLES = (
     "A proof needs the boundary samples, either as the first points or as the last value points."
@@ -103,6 +108,18 @@ class SampledDomain:
         own = self.boundary.loops
         if len(loops) != len(own) or not all(map(np.array_equal, loops, own)):
             raise EngineError(OTHER_OUTLINE, others=sum(map(len, loops)), own=sum(map(len, own)))
+
+    def require_extension(self, extension: Extension) -> None:
+        """Raise if a transform is not at the nodes of this domain's paths.
+
+        Raises
+        ------
+        EngineError
+            If the outlines or the points differ.
+        """
+        self.require_boundary(extension.loops)
+        if not np.array_equal(extension.points, self.paths.nodes):
+            raise EngineError(OTHER_POINTS)
 
     def sample_nodes(self) -> Indices:
         """Return the nodes at the samples of the boundary, (p,).

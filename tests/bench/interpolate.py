@@ -27,10 +27,12 @@ from engine.interpolation import (
 )
 from engine.maps import Boundary, Bounds, HarmonicMap, Span
 from engine.paths import root_sheets
+from engine.sliders import PoseBlend
 from engine.streaming import Positions, Series, build_series, finish
 from tests.bench.table import Row, Table, measure
 
 MIDDLE = 0.4  # of the interval
+SLIDER_BOUNDS = Bounds(k=0.21, sigma_a=1.75, sigma_b=0.55)  # hardly wider than the bent giraffe
 INTEGRATED = (Variant.NU, Variant.ETA, Variant.SCALED_ETA, Variant.METRIC)
 
 
@@ -122,6 +124,11 @@ def _frames(pair: KeyframePair) -> Table:
         rows.append(Row(name=f"{variant}, positions", seconds=seconds))
         seconds = measure(partial(inbetweens.frame, MIDDLE), repeats=20)
         rows.append(Row(name=f"{variant}, with f_z and f_z̄", seconds=seconds))
+    for name, weights in (("within the limits", (0.6, 0.4)), ("curbed", (-0.3, 1.3))):
+        poses = PoseBlend.of(pair.maps, pair.sites, pair.extension, bounds=SLIDER_BOUNDS)
+        seconds = measure(partial(poses.frame, weights), repeats=20)
+        curbed = f"ln |f_z| curbed by {poses.frame(weights).curbed:.2f}"
+        rows.append(Row(name=f"slider, {name}", seconds=seconds, note=curbed))
     return Table(title=f"A frame at {len(first):,} vertices, directly", rows=tuple(rows))
 
 

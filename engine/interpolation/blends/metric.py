@@ -224,10 +224,5 @@ def _matching(interval: KeyframeSegment) -> Extension:
         raise EngineError(
             "The metric variant needs the Hilbert transform of the outline; give the transform."
         )
-    sites.require_boundary(transform.loops)
-    if not np.array_equal(transform.points, sites.paths.nodes):
-        raise EngineError(
-            "The Hilbert transform is prepared for other points. Prepare it for the nodes of "
-            "the sites' paths."
-        )
+    sites.require_extension(transform)
     return transform

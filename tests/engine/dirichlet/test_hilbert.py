@@ -350,3 +350,24 @@ def test_around_holes_functions_are_found_from_real_parts_but_for_a_constant_eac
     inner = points_of(shape, 150)
     wanted = (function(inner + h) - function(inner - h)) / (2 * h)
     assert_allclose(slopes[: len(inner)], wanted, rtol=0, atol=5e-3)
+
+
+def test_fitted_polynomials_stay_within_limits_between_nodes():
+    outline, cage = letter_l()
+    panels = HilbertTransform.on(Domain(outline, cage)).panels
+    values = np.sin(9 * panels.checked.real)
+    low, high = 0.0 * values - 0.5, 0.0 * values + 0.5
+    fitted, excess = panels.fit_within(values, low, high, np.zeros(len(panels)))
+    clipped = np.clip(values[:, :NODES], -0.5, 0.5) - values[:, :NODES]
+    assert np.abs(values + panels.interpolate(clipped)).max() > 0.502
+    assert np.abs(values + panels.interpolate(fitted)).max() < 0.50002
+    assert excess < 2e-5
+    assert_allclose(fitted, clipped, rtol=0, atol=0.02)
+
+
+def test_polynomials_within_limits_are_fitted_by_nothing():
+    panels = HilbertTransform.on(Domain(*bar())).panels
+    values = panels.checked.real
+    fitted, excess = panels.fit_within(values, values - 0.1, values + 0.1, np.zeros(len(panels)))
+    assert excess == 0.0
+    assert not fitted.any()
