@@ -1,11 +1,13 @@
 """The parts of a session and of a project keep their rules by themselves."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import pytest
 from documents import disc_document
+from sessions import session_of
 
 from app.document import OPACITY, Channel, Document, pose_channel
+from app.editor.actions.frame_update import session_revision
 from app.editor.parts.dialogs import DialogState, ProblemReport, RecoveryDialog, ShortcutSheet
 from app.editor.parts.export_state import ExportDestinations
 from app.editor.parts.notices import Notices
@@ -13,6 +15,7 @@ from app.editor.parts.selection import Selection
 from app.editor.parts.timeline import KeyBox, TimelineState, TimeRangeView
 from app.editor.parts.tools import ToolState
 from app.editor.work.motion_setup import MotionSetup
+from app.editor.work.revised import Revised
 
 KEYS = {pose_channel(1): frozenset({0, 6})}
 
@@ -30,6 +33,18 @@ def draft(document):
     return MotionSetup(
         layer=layer.id, domain=layer.domain, kind="anything", motion="hop", joints={}, suggested={}
     )
+
+
+def test_change_of_any_part_changes_the_revision_of_the_session(tmp_path):
+    session = session_of(disc_document(), tmp_path)
+    wholes = (session, session.project)
+    values = [getattr(whole, each.name) for whole in wholes for each in fields(whole)]
+    parts = [*wholes, *(each for each in values if isinstance(each, Revised))]
+    assert len(parts) > 20
+    for part in parts:
+        before = session_revision(session)
+        part.revision += 1
+        assert session_revision(session) != before, type(part)
 
 
 def test_handles_and_keys_are_not_selected_at_once():
