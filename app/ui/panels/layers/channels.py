@@ -37,24 +37,6 @@ MOVES = {
 }
 
 
-def draw_opacity_channel(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
-    channel = Channel(OPACITY, layer.id)
-    opacity = value_at(document, channel, frame)
-    label(look, _("Opacity"))
-    hint = (
-        _("Opacity of the layer. A change sets a key at this frame.")
-        if layer.keys_of(OPACITY)
-        else _("Opacity of the layer")
-    )
-    faded = slider(
-        look, "opacity", 100 * opacity, PERCENT, text="%.0f %%", hint=hint, room=diamond_room(look)
-    )
-    actions = draw_key_diamond(document, look, channel, frame)
-    if faded is not None:
-        actions.append(do(set_channel_value, channel, min(max(faded.value / 100, 0.0), 1.0)))
-    return actions
-
-
 def draw_transform_channel(
     document: Document, look: Look, layer: Layer, frame: int
 ) -> list[Action]:
@@ -122,23 +104,29 @@ def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int)
     return actions + draw_key_diamond(document, look, channel, frame)
 
 
-def draw_effect_channels(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
-    """Draw the effects of a layer, by what their values measure."""
+def draw_value_channels(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
+    """Draw the opacity and the effects of a layer, by what their values measure."""
     actions: list[Action] = []
-    for kind in LAYER_KINDS.values():
-        if not kind.uniform:
-            continue
+    room = diamond_room(look)
+    for kind in (OPACITY, *(kind for kind in LAYER_KINDS.values() if kind.uniform)):
         channel = Channel(kind, layer.id)
         value = value_at(document, channel, frame)
+        is_for_all = kind is OPACITY and not layer.keys_of(OPACITY)
+        hint = (
+            _("It is the same in all frames until you set a key.")
+            if is_for_all
+            else _("A change sets a key at this frame.")
+        )
         label(look, _(kind.label))
         changed: Any = None
         if kind.fields[0].quantity is Quantity.COLOUR:
-            imgui.set_next_item_width(-diamond_room(look))
+            imgui.set_next_item_width(-room)
             edited, levels = imgui.color_edit3(f"##{kind.name}", list(value))
+            draw_tooltip(hint)
             changed = tuple(min(max(level, 0.0), 1.0) for level in levels[:3]) if edited else None
         else:
-            room = diamond_room(look)
-            faded = slider(look, kind.name, 100 * value, PERCENT, text="%.0f %%", room=room)
+            shown = 100 * value
+            faded = slider(look, kind.name, shown, PERCENT, text="%.0f %%", hint=hint, room=room)
             changed = None if faded is None else min(max(faded.value / 100, 0.0), 1.0)
         actions += draw_key_diamond(document, look, channel, frame)
         if changed is not None:

@@ -42,10 +42,9 @@ from app.editor.layering.switches import key_switch
 from app.texts import _
 from app.ui.panels.key_diamond import diamond_room, draw_key_diamond
 from app.ui.panels.layers.channels import (
-    draw_effect_channels,
-    draw_opacity_channel,
     draw_order_channel,
     draw_transform_channel,
+    draw_value_channels,
 )
 from app.ui.style.sliders import Scale, slider
 from app.ui.style.theme import Look
@@ -73,8 +72,7 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     )
     if entered or (imgui.is_item_deactivated_after_edit() and name != layer.name):
         actions.append(do(rename_layer, identity, name))
-    actions += draw_opacity_channel(project.document, look, layer, frame)
-    actions += draw_effect_channels(project.document, look, layer, frame)
+    actions += draw_value_channels(project.document, look, layer, frame)
     label(look, _("Blend"))
     actions += [
         do(editing.edit_document, layer_commands.set_blend(identity, blend))
