@@ -136,7 +136,8 @@ def show(
     ):
         return earlier if earlier.frame == frame else replace(earlier, frame=frame)
     # A rough correction displaces the pose as it displaced the earlier one.
-    instead = near or (None if is_key and not is_rough else pose)
+    is_exactly_corrected = is_key and correction is not None and not is_rough
+    instead = near or (None if is_exactly_corrected else pose)
     vertices = store.vertices(clip, frame, instead, None if near else correction)
     if vertices is None:
         raise ValueError("what is exact has vertices")
