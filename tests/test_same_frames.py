@@ -10,39 +10,42 @@ from app.storage import decode_picture, load_project
 from app.storage.assets import sample_images
 
 NEAR = 0.05  # thousandths of the drawing's longer side
-SAMPLES = sorted(path.stem for path in sample_images().glob("*.lissom"))
+NAMES = {path.stem for path in sample_images().glob("*.lissom")}
+QUICK = "ring"
 SHARES = (0.0, 0.13, 0.4, 0.5, 0.77, 1.0)  # of the animation, at which frames are compared
 
 
-def exported(document, meshes, frame):
-    """Return where an export has the vertices of the window's meshes in the scene, by layer."""
-    animations = {
-        layer.id: Animation(
-            clip_of(document, layer.id), points=meshes[layer.id].domain.mesh.vertices
-        )
-        for layer in document.layers
-    }
+def exported(document, points, frames):
+    """Return where an export has points of each layer in the scene, by frame."""
+    clips = [clip_of(document, layer.id) for layer in document.layers]
+    animations = {clip.layer.id: Animation(clip, points=points[clip.layer.id]) for clip in clips}
     joints = ParentTransforms(document, {i: each.sampler for i, each in animations.items()})
     return {
-        i: joints.placement(i, frame).apply(each.positions(frame)) for i, each in animations.items()
+        frame: {
+            i: joints.placement(i, frame).apply(each.positions(frame))
+            for i, each in animations.items()
+        }
+        for frame in frames
     }
 
 
-@pytest.mark.parametrize("name", SAMPLES)
+@pytest.mark.parametrize(
+    "name",
+    [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in NAMES],
+)
 def test_window_shows_the_frames_of_an_export(name, tmp_path):
     document = load_project(sample_images() / f"{name}.lissom")
     first = document.layers[0]
     picture = decode_picture(first.picture.data, first.name).rgba
     session = session_of(document, tmp_path, picture, prepares_ahead=True)
-    frames, size = document.frames, max(document.canvas)
-    runtimes = session.project.runtimes.layers
-    meshes = {i: runtime.store.mesh for i, runtime in runtimes.items()}
-    for share in SHARES:
-        frame = round(frames.first + share * (frames.last - frames.first))
+    runtimes, whole = session.project.runtimes.layers, document.frames
+    frames = [round(whole.first + share * (whole.last - whole.first)) for share in SHARES]
+    meshes = {i: runtime.shown.mesh for i, runtime in runtimes.items()}
+    points = {i: mesh.domain.mesh.vertices for i, mesh in meshes.items()}
+    for frame, wanted in exported(document, points, frames).items():
         go(session, frame)
-        for i, wanted in exported(document, meshes, frame).items():
-            shown = runtimes[i].shown
-            assert shown.is_current
-            assert shown.mesh is meshes[i]
-            drawn = shown.placement.apply(shown.positions)
-            assert np.abs(drawn - wanted).max() < NEAR * size / 1000, (i, frame)
+        for i, runtime in runtimes.items():
+            assert runtime.shown.is_current
+            assert runtime.shown.mesh is meshes[i]
+            drawn = runtime.shown.placement.apply(runtime.shown.positions)
+            assert np.abs(drawn - wanted[i]).max() < NEAR * max(document.canvas) / 1000, (i, frame)
