@@ -186,7 +186,7 @@ def _follow_document(session: Session, project: Project) -> None:
     project.update_comparisons(
         session.display.compare_view.method if session.display.compare_view else None
     )
-    if _is_final(session, project):
+    if project.visible_drag is None or _is_final(session, project):
         _pin(session, project)
 
 

@@ -21,7 +21,6 @@ from app.document import (
     Channel,
     channel_commands as channels,
     handle_commands as handles,
-    key_commands,
     key_commands as keys,
     pose_channel,
     pose_commands as poses,
@@ -35,7 +34,6 @@ from app.document.keyframe import MAX_REVOLUTIONS, Handle, Keyframe, Target
 from app.document.layer import NO_HANDLE, NO_KEY, POSE_COUNT, PictureFile
 from app.document.model import Document
 from app.document.settings import NATURAL, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
-from app.editor.actions import editing
 from app.errors import LissomError
 from engine.arrays import NOT_FINITE
 from engine.errors import EngineError
@@ -234,9 +232,9 @@ def test_scaling_time():
 
 def test_the_last_key_becomes_the_first():
     document = animated(0, 10, 20)
-    closed = editing.edit_layer(0, key_commands.match_loop_ends)(document)
+    closed = keys.match_loop_ends(0)(document)
     assert closed.layers[0].key(20).pose is document.layers[0].key(0).pose
-    assert editing.edit_layer(0, key_commands.match_loop_ends)(closed) is closed
+    assert keys.match_loop_ends(0)(closed) is closed
 
 
 def test_settings():
@@ -371,7 +369,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (channels.scale_keys({POSES: {0, 10}}, float("nan")), says(BAD_TIME_FACTOR)),
         (settings.scale_time(0.01), says(KEYS_MEET, one=0, other=10, frame=0)),
         (settings.scale_time(-1.0), says(BAD_TIME_FACTOR)),
-        (editing.edit_layer(0, key_commands.match_loop_ends), None),
+        (keys.match_loop_ends(0), None),
         (channels.set_easing({POSES: {5}}, LINEAR), says(NO_KEY, frame=5)),
         (settings.set_fps(0.0), "frames per second"),
         (settings.set_fps(float("nan")), "frames per second"),
@@ -394,11 +392,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
     ],
 )
 def test_what_is_not_possible_says_why(command, message):
-    document = (
-        editing.edit_layer(0, key_commands.match_loop_ends)(DOCUMENT)
-        if message is None
-        else DOCUMENT
-    )
+    document = keys.match_loop_ends(0)(DOCUMENT) if message is None else DOCUMENT
     if message is None:
         document, message = channels.delete_keys({POSES: {0, 10}})(document), "needs two keys"
     with pytest.raises(LissomError, match=message):

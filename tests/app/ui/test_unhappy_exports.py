@@ -356,6 +356,7 @@ def test_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, hel
     assert session.export.run is None
     worker.end.set()
     window.until(lambda: not export_threads())
+    window.frames()
     written = sorted(path for path in tmp_path.rglob("*") if path.is_file())
     if format_ == "png":
         assert [path.name for path in written] == [
