@@ -77,7 +77,11 @@ from app.document.commands.layers import (
 from app.document.commands.pose_commands import (
     with_all_targets as with_all_targets,
 )
-from app.document.history import History as History, PreviewPose as PreviewPose
+from app.document.history import (
+    History as History,
+    PreviewPose as PreviewPose,
+    UnfinishedChange as UnfinishedChange,
+)
 from app.document.keyframe import (
     MAX_REVOLUTIONS as MAX_REVOLUTIONS,
     WEIGHT_PRESETS as WEIGHT_PRESETS,

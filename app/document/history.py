@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from app.document.commands.command import Command
 from app.document.commands.pose_commands import with_all_targets
@@ -34,6 +35,13 @@ class UndoStep:
     gesture: object = None
 
 
+class UnfinishedChange(NamedTuple):
+    """A change that is displayed but not yet a step; `commit` makes it one."""
+
+    applied_to: Callable[[Document], Document]
+    commit: Callable[[], None]
+
+
 class History:
     """The undo steps of a session; beyond `memory` bytes, the oldest steps are dropped."""
 
@@ -49,9 +57,8 @@ class History:
         self._undone: list[UndoStep] = []
         self._saved = document if saved else None
         self._memory = memory
-        # Called once before the next change of the steps: it commits a drag that is displayed but
-        # not yet a step.
-        self.before_change: Callable[[], None] | None = None
+        # Committed before the next change of the steps.
+        self.unfinished: UnfinishedChange | None = None
 
     @property
     def document(self) -> Document:
@@ -106,21 +113,23 @@ class History:
         end with the document before the gesture. Raises a `LissomError` if the command is not
         possible. The history is then unchanged.
         """
-        if self.before_change is not None and command(self.document) is self.document:
-            return
-        self._commit_preview()
+        if self.unfinished is not None:
+            displayed = self.unfinished.applied_to(self.document)
+            if command(displayed) is displayed:
+                return
+        self._commit_unfinished()
         document = command(self.document)
         unkeyed = _fitting(self.preview_pose, self.document, document)
         self._go_on(UndoStep(document, unkeyed, command.label, gesture))
 
     def set_preview_pose(self, unkeyed: PreviewPose | None, *, gesture: object = None) -> None:
         """Replace or remove the unkeyed pose, as an undo step."""
-        self._commit_preview()
+        self._commit_unfinished()
         self._go_on(UndoStep(self.document, unkeyed, "Pose", gesture))
 
     def extend_step(self, command: Command) -> None:
         """Run a command in the last step and remove the unkeyed pose; redo stays possible."""
-        self._commit_preview()
+        self._commit_unfinished()
         step = self._steps[self._now]
         document = command(step.document)
         if document is not step.document:
@@ -140,7 +149,7 @@ class History:
 
     def undo(self) -> None:
         """Go back one step, to the same document object, if possible."""
-        self._commit_preview()
+        self._commit_unfinished()
         if self._now:
             self.revision += 1
             self._now -= 1
@@ -149,15 +158,15 @@ class History:
     def redo(self) -> None:
         """Go forward one step, if possible."""
         if self._now + 1 < len(self._steps):
-            self._commit_preview()
+            self._commit_unfinished()
         if self._now + 1 < len(self._steps):
             self.revision += 1
             self._now += 1
 
-    def _commit_preview(self) -> None:
-        commit, self.before_change = self.before_change, None
-        if commit is not None:
-            commit()
+    def _commit_unfinished(self) -> None:
+        unfinished, self.unfinished = self.unfinished, None
+        if unfinished is not None:
+            unfinished.commit()
 
     def _put(self, index: int, step: UndoStep) -> None:
         self.revision += 1

@@ -105,7 +105,7 @@ def undo(session: Session, project: Project) -> None:
         return
     before, unkeyed = project.document, project.preview_pose
     if drag is not None and (is_held or drag.start is None):
-        project.pending.end_gesture(drag.gesture)
+        project.pending.interrupt(drag)
         drop_drag(session, project, drag)
         # Other edits of its gestures, such as a new handle.
         for gesture in (*drag.target_changes, drag.gesture):
@@ -128,7 +128,7 @@ def revert_gesture(session: Session, project: Project, gesture: object) -> None:
 
 
 def _redo_text(_session: Session, project: Project) -> str:
-    step = project.history.redo_label
+    step = project.history.redo_label if project.drag is None else None
     return "" if step is None else _("Redo “{step}”").format(step=step)
 
 
@@ -141,10 +141,9 @@ def _redo_text(_session: Session, project: Project) -> str:
 )
 @with_project
 def redo(session: Session, project: Project) -> None:
-    if project.history.redo_label is None:
+    if project.history.redo_label is None or project.drag is not None:
         return
-    commit_drag_now(session)
-    before, unkeyed = project.document, project.history.preview_pose
+    before, unkeyed = project.document, project.preview_pose
     _show_step_notice(session, REDONE, project.history.redo_label)
     project.history.redo()
     _forget_what_is_gone(project)

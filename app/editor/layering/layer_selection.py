@@ -1,6 +1,5 @@
 """The active layer, the selected layers, and soloed layers."""
 
-from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 
@@ -10,7 +9,8 @@ def set_active_layer(session: Session, project: Project, identity: int) -> None:
     """Make a layer active: its handles and keys are shown and edited."""
     before = project.selection.active
     if identity != before:
-        release_drag(session)
+        if project.drag is not None:
+            project.pending.interrupt(project.drag)
         project.layer_list.linger(before)
         project.layer_setup.forget_previews()
         session.tools.hover(None)

@@ -6,7 +6,7 @@ from typing import Self
 from app.document import Layer
 from app.editor.actions import playback
 from app.editor.actions.action_spec import named_action, unless
-from app.editor.actions.posing.pose_drag import move_pose, release_drag
+from app.editor.actions.posing.pose_drag import move_pose
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.parts.tools import Hint
 from app.editor.project import Project
@@ -92,7 +92,6 @@ def nudge_layer(session: Session, project: Project, step: complex) -> None:
     """Move the active layer's topmost parent by `step` in pixels; its descendants follow."""
     if _set_root_parent_active(session, project, None):
         move_pose(session, step)
-        release_drag(session)
 
 
 def _is_beside(spot: PointerHit) -> bool:

@@ -120,7 +120,7 @@ class DragSession(PendingChange):
     translations: dict[object, complex] = field(default_factory=dict)
     targets: Mapping[int, Target] | None = None
     dragged_handles: frozenset[int] = frozenset()
-    is_held: bool = True
+    is_held: bool = False
     solver: DragSolver | None = None
     solved: tuple[Mapping[int, Target], tuple[BoundedPull, ...]] | None = None
     steps: int = 0
@@ -157,32 +157,31 @@ class DragSession(PendingChange):
         self, gesture: object, change: TargetChange, hand: BoundedPull | None = None
     ) -> None:
         """Set a gesture's change of targets, in place of its earlier one."""
-        self.target_changes[gesture] = change
+        self.update_targets({**self.target_changes, gesture: change})
         if hand is not None:
             self.dragged_targets[gesture] = hand
-        self.update_targets()
 
     def move(self, gesture: object, way: complex) -> None:
         """Set a gesture's translation of the whole layer from the start."""
-        self.translations[gesture] = way
+        self._translate({**self.translations, gesture: way}, self.found or self.before)
         self.change_targets(gesture, _nothing)
-        pose = self.found or self.before
-        if pose is not None:
-            self.take(pose)
 
     def take(self, pose: Pose) -> None:
         """Store the solver's pose, and the same with the translations."""
-        way = sum(self.translations.values())
-        self.found = pose
-        self.newest = _moved_pose(self.clip.layer, pose, way) if way else pose
+        self._translate(self.translations, pose)
+
+    def _translate(self, translations: dict[object, complex], pose: Pose | None) -> None:
+        way = sum(translations.values())
+        newest = _moved_pose(self.clip.layer, pose, way) if pose is not None and way else pose
+        self.translations, self.found, self.newest = translations, pose, newest
 
     def revert(self, gesture: object) -> None:
         """Remove a gesture's targets and translation."""
-        del self.target_changes[gesture]
         self.dragged_targets.pop(gesture, None)
         if self.translations.pop(gesture, None) and self.found is not None:
             self.take(self.found)
-        self.update_targets()
+        left = {by: change for by, change in self.target_changes.items() if by is not gesture}
+        self.update_targets(left)
 
     def force_targets(self) -> None:
         """Keep the released positions as targets even if they cannot be reached."""
@@ -196,12 +195,13 @@ class DragSession(PendingChange):
         before, hands = self.targets, self.dragged_targets
         self.solver, places = self.solver.release(before, tuple(hands.values()))
         moves = {i: place.position - before[i].position for i, place in places.items()}
+        changes = dict(self.target_changes)
         for gesture in hands:
             others = {i for other in hands if other is not gesture for i in hands[other].handles}
             own = {i: moves.pop(i) for i in places if i in moves and i not in others}
-            self.target_changes[gesture] = partial(_moved, self.target_changes[gesture], own)
+            changes[gesture] = partial(_moved, changes[gesture], own)
         self.dragged_targets = {}
-        self.update_targets()
+        self.update_targets(changes)
         # The pose stays unless a later gesture has set an absolute target.
         found = {**before, **places}
         if all(abs(self.targets[i].position - found[i].position) < ROUNDING for i in found):
@@ -224,15 +224,14 @@ class DragSession(PendingChange):
     def _moved(self, targets: Mapping[int, Target]) -> Mapping[int, Target]:
         return _moved_targets(targets, dict.fromkeys(targets, sum(self.translations.values())))
 
-    def update_targets(self) -> None:
-        """Compute the targets again."""
+    def update_targets(self, changes: dict[object, TargetChange]) -> None:
+        """Compute the targets of these changes; if a target is refused, the earlier ones stay."""
+        targets, dragged = None, frozenset[int]()
+        if self.start is not None:
+            targets = combine_targets(self.start, changes.values())
+            dragged = find_changed_handles(self.start, changes.values())
+        self.target_changes, self.targets, self.dragged_handles = changes, targets, dragged
         self.steps = 0
-        if self.start is None:
-            # Targets of the dropped start were for other handles.
-            self.targets, self.dragged_handles = None, frozenset()
-        else:
-            self.targets = combine_targets(self.start, self.target_changes.values())
-            self.dragged_handles = find_changed_handles(self.start, self.target_changes.values())
 
     @property
     def is_rigid(self) -> bool:

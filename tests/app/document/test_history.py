@@ -12,7 +12,7 @@ from app.document.commands import (
 )
 from app.document.commands.command import Command
 from app.document.commands.layers import layer_commands
-from app.document.history import History, PreviewPose, _bytes_only_in
+from app.document.history import History, PreviewPose, UnfinishedChange, _bytes_only_in
 from app.errors import LissomError
 from app.storage.layers import make_still_layer
 
@@ -339,7 +339,7 @@ def test_a_preview_is_committed_before_any_other_change(change):
         committed.append(history.document.fps)
         history.do(set_fps(33))
 
-    history.before_change = commit
+    history.unfinished = UnfinishedChange(set_fps(33), commit)
     layer = history.document.layers[0]
     pose = PreviewPose(layer=layer.id, frame=1, pose=layer.keys[0].pose)
     {
@@ -350,7 +350,7 @@ def test_a_preview_is_committed_before_any_other_change(change):
         "redo": history.redo,
     }[change]()
     assert committed == [31]
-    assert history.before_change is None
+    assert history.unfinished is None
     wanted = {"do": 34, "extend": 34, "undo": 31}
     assert history.document.fps == wanted.get(change, 33)
 

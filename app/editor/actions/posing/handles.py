@@ -101,6 +101,7 @@ def _take_suggestions_back(
     """Remove the suggested handles; later edits stay."""
     if session.project is not project:
         return
+    commit_drag_now(session)
     project.history.revert(gesture)
     remaining = added & {handle.id for handle in project.layer.handles}
     if remaining:

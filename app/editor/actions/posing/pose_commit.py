@@ -14,7 +14,7 @@ def drop_drag(session: Session, project: Project, drag: DragSession) -> None:
     """End a drag without a step; a result that is still computed is dropped."""
     if drag in project.pending.changes:
         project.pending.remove(drag)
-        project.history.before_change = None
+        project.history.unfinished = None
         session.jobs.drop(POSING)
 
 

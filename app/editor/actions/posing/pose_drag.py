@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from app.document import Pose, Target, keyed_pose_at, segment_time_at
+from app.document import Pose, Target, UnfinishedChange, keyed_pose_at, segment_time_at
 from app.editor.actions import playback
 from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
 from app.editor.actions.posing.pose_commit import POSING, drop_drag
@@ -27,9 +27,9 @@ def drag_handles(
 ) -> None:
     """Set targets of handles in the pose of the present frame; other targets stay.
 
-    Drags of one gesture are one undo step, and a later target replaces an earlier one. Without a
-    gesture, each drag until its release is a step. A missing in-between is computed first; targets
-    set meanwhile are kept. `hand` pulls with bounded force.
+    Drags of one gesture are one undo step, and a later target replaces an earlier one. A gesture
+    holds the drag until the release. A missing in-between is computed first; targets set meanwhile
+    are kept. `hand` pulls with bounded force.
     """
     wanted = change if callable(change) else partial(absolute_targets, change)
     _change(session, project, gesture, lambda held, by: held.change_targets(by, wanted, hand))
@@ -53,14 +53,19 @@ def _change(
     change: Callable[[DragSession, object], None],
 ) -> None:
     """Change the drag of the present pose, or begin one."""
-    if project.layer_runtime.shown is None or (
-        gesture and gesture is project.pending.ended_gesture
-    ):
-        return
     drag = project.visible_drag
+    if drag is None and project.drag is not None:
+        project.pending.interrupt(project.drag)
+    if project.layer_runtime.shown is None or gesture in project.pending.ended_gestures:
+        return
     if drag is None or not drag.is_held:
         drag = _begin(session, project, gesture)
     change(drag, gesture or object())
+    drag.is_held |= gesture is not None
+    if drag is not project.drag:
+        project.pending.add(drag)
+        finish = partial(finish_drag, session, project)
+        project.history.unfinished = UnfinishedChange(drag.applied_to, finish)
     step_pose_solver(session, project)
 
 
@@ -87,7 +92,7 @@ def commit_drag_now(session: Session, project: Project) -> None:
 
 def set_targets(session: Session, targets: Mapping[int, Target]) -> None:
     """Set targets of handles from a field of the panel."""
-    _once(session, targets)
+    drag_handles(session, targets)
 
 
 @named_action(
@@ -107,7 +112,7 @@ def pin_selected_handles(session: Session, project: Project) -> None:
         return {i: replace(targets[i], position=start.places[i]) for i in known}
 
     if selected:
-        _once(session, here)
+        drag_handles(session, here)
 
 
 @with_project
@@ -121,7 +126,7 @@ def nudge_handles(session: Session, project: Project, step: complex) -> None:
         return {i: replace(targets[i], position=targets[i].position + step) for i in known}
 
     if moved:
-        _once(session, away)
+        drag_handles(session, away)
 
 
 def free_rotation(session: Session, identity: int) -> None:
@@ -131,7 +136,7 @@ def free_rotation(session: Session, identity: int) -> None:
         known = {identity} & targets.keys()
         return {i: replace(targets[i], rotation=None) for i in known}
 
-    _once(session, free)
+    drag_handles(session, free)
 
 
 @with_project
@@ -161,11 +166,6 @@ def revert_drag(session: Session, project: Project, gesture: object) -> None:
             project.history.revert(drag.gesture)
 
 
-def _once(session: Session, change: TargetChange | Mapping[int, Target]) -> None:
-    drag_handles(session, change)
-    release_drag(session)
-
-
 def _begin(session: Session, project: Project, gesture: object | None) -> DragSession:
     """Begin a drag of the pose at the present frame.
 
@@ -184,13 +184,12 @@ def _begin(session: Session, project: Project, gesture: object | None) -> DragSe
     drag = project.visible_drag
     if drag is not None and drag.newest is None:
         session.jobs.drop(POSING)
-        drag.clip, drag.start, drag.is_held = project.clip, _start(session, project), True
+        drag.clip, drag.start = project.clip, _start(session, project)
         return drag
     if drag is not None and gesture is None and drag.is_stepped:
-        drag.is_held = True
         return drag
     finish_drag(session, project)
-    begun = DragSession(
+    return DragSession(
         clip=project.clip,
         frame=frame,
         gesture=gesture or object(),
@@ -200,17 +199,6 @@ def _begin(session: Session, project: Project, gesture: object | None) -> DragSe
         is_keyed=session.settings.preferences.auto_key,
         easing=session.settings.preferences.easing,
     )
-    project.pending.add(begun)
-    project.history.before_change = partial(_end_for_change, session, project)
-    return begun
-
-
-def _end_for_change(session: Session, project: Project) -> None:
-    """Commit the drag before another change of the document; later moves of its hand are void."""
-    drag = project.drag
-    if drag is not None and drag.is_held:
-        project.pending.end_gesture(drag.gesture)
-    finish_drag(session, project)
 
 
 def _start(session: Session, project: Project) -> DragStart | None:

@@ -38,9 +38,8 @@ def update_drag(session: Session, project: Project) -> None:
     if drag is None:
         return
     is_here = is_drag_at_playhead(session, project, drag)
-    if drag.is_held and not is_here:
-        drag.is_held = False
-        project.pending.end_gesture(drag.gesture)
+    if not is_here:
+        project.pending.interrupt(drag)
     if is_here or drag.preview is None:
         drag.preview = drag.newest
     if not drag.is_held and _is_final(project, drag) and drag.newest is not None:
@@ -52,13 +51,14 @@ def update_drag(session: Session, project: Project) -> None:
 def finish_drag(session: Session, project: Project) -> None:
     """Solve an unfinished drag to rest on this thread, and commit it.
 
-    Another change of the document follows. So the drag ends even if it is held.
+    Another change of the document follows. So the drag ends even if it is held, and later moves of
+    its hand are void.
     """
     drag = project.drag
     if drag is None:
         return
     session.jobs.drop(POSING)
-    drag.is_held = False
+    project.pending.interrupt(drag)
     try:
         while not _is_final(project, drag):
             pace = _pace(drag)._replace(seconds=inf)
@@ -214,7 +214,7 @@ def _take(project: Project, drag: DragSession, steps: _Steps) -> None:
     project.runtimes.layers[drag.layer].rig = steps.solver.rig
     if drag.start is None:
         drag.start = steps.start
-        drag.update_targets()
+        drag.update_targets(drag.target_changes)
     towards = (steps.targets, steps.hands)
     if (drag.targets, tuple(drag.dragged_targets.values())) == towards:
         drag.steps += steps.taken

@@ -204,14 +204,15 @@ def test_a_box_selects_what_is_in_it(session, shift):
         assert session.project.selection.handles == inside | kept
 
 
-def test_a_playhead_that_leaves_a_drag_does_not_leave_it_half_taken_back(session):
-    """The pose that is left settles where it was; the drag goes on at the other frame."""
+def test_drag_ends_when_the_playhead_leaves_its_frame(session):
+    """The pose comes to rest at its frame; later moves of the hand are void."""
     project, first = session.project, session.project.document
     drag(session, AT_RIGHT, RIGHT + 6j)
     playback.scrub(session, 10)
     tool_pointer.move_pointer(session, RIGHT + 9j)
     frames(session)
-    assert project.layer.key_frames == {0, 10}
+    assert project.layer.key_frames == {0}
+    assert project.document is not first
     tool_pointer.cancel_tool(session)
     settle(session)
     assert project.document is first
