@@ -169,7 +169,10 @@ class Layer:
         )
         require(
             not self.still or (len(self.keys) == 1 and not self.handles),
-            N_("{name!r} is a still picture, so it cannot have handles or a second key."),
+            N_(
+                "{name!r} is a still picture, so it cannot have handles or a second key. Make it "
+                "posable first."
+            ),
             name=self.name,
         )
         mask = self.cut_out.mask

@@ -110,10 +110,6 @@ class ToolState(Revised):
         if mode == self.mode:
             self.select("pose")
 
-    def drop_motion_setup(self) -> None:
-        """Go back to posing without the draft of a motion, which fits no more."""
-        self.mode = "pose"
-
     def begin(self, tool: ActiveTool | None) -> None:
         """Give the pointer to a tool."""
         self.active_tool = tool

@@ -28,6 +28,7 @@ from app.editor.parts.tools import Hint
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.tools.numeric_entry import NumericEntry
+from app.editor.tools.select_tools import pressed_other_layer
 from app.editor.tools.tool import PointerHit, Tool, to_scene
 from app.editor.work.drag_session import DragStart
 from app.texts import _
@@ -64,11 +65,9 @@ class PoseTool(Tool):
         if spot.track_key is not None:
             text = _("drag to move the key at frame {frame}")
             return (Hint(text.format(frame=spot.track_key)),)
-        if (
-            spot.on_shape
-            and session.display.overlays.handles
-            and not (spot.on_ring or session.tools.mode == "record")
-        ):
+        adds = spot.on_shape and session.display.overlays.handles and not project.layer.still
+        is_used = spot.on_ring or pressed_other_layer(project, spot) is not None
+        if adds and not (is_used or session.tools.mode == "record"):
             return (Hint(_("click to add a handle")),)
         return ()
 

@@ -57,13 +57,14 @@ class RotateTool(Tool):
     moved: bool = False
 
     @classmethod
-    def hints(cls, _session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
+    def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if spot.on_ring:
             (handle,) = project.selection.handles
             is_alone = draggable_track(project, handle) is not None
             text = _("drag to turn the shape around the handle")
             return (Hint(_("drag to key this handle's rotation only") if is_alone else text),)
-        if spot.handle is None or project.layer.is_locked(spot.handle):
+        is_recorded = session.tools.mode == "record"
+        if spot.handle is None or is_recorded or project.layer.is_locked(spot.handle):
             return ()
         # The hint names the ring, since many window managers take Alt+drag.
         return (Hint(_("drag its ring to turn")),)

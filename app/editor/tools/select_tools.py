@@ -85,7 +85,7 @@ class PickLayerTool(Tool):
 
     @classmethod
     def hints(cls, _session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        layer = _pressed_other_layer(project, spot)
+        layer = pressed_other_layer(project, spot)
         if layer is None:
             return ()
         name = project.document.layer(layer).name
@@ -94,7 +94,7 @@ class PickLayerTool(Tool):
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Make the visible layer at the place active, if it is another one."""
-        layer = _pressed_other_layer(project, spot)
+        layer = pressed_other_layer(project, spot)
         if layer is None:
             return None
         choosing = cls(project=project, last=project.selection.active)
@@ -106,7 +106,7 @@ class PickLayerTool(Tool):
         set_active_layer(session, self.last)
 
 
-def _pressed_other_layer(project: Project, spot: PointerHit) -> int | None:
+def pressed_other_layer(project: Project, spot: PointerHit) -> int | None:
     """Return the layer that a press selects, if it is not the active layer."""
     if spot.handle is not None or spot.on_ring or spot.ctrl or spot.shift:
         return None

@@ -24,6 +24,7 @@ KEY_NAMES = {
     "PageUp": _("PgUp"),
     "PageDown": _("PgDn"),
     "Delete": _("Del"),
+    "Escape": _("Esc"),
     "Equal": "+",
     "Minus": "−",
     "LeftBracket": "[",

@@ -102,13 +102,6 @@ def test_draft_of_a_motion_is_remembered_when_it_is_left(draft):
     assert (tools.motion_setup, tools.last_motion_setup) == (None, moved)
 
 
-def test_draft_of_a_motion_is_forgotten_when_it_fits_no_more(draft):
-    tools = ToolState()
-    tools.select(draft)
-    tools.drop_motion_setup()
-    assert (tools.mode, tools.last_motion_setup) == ("pose", None)
-
-
 def test_timeline_shows_the_range_of_a_gesture_when_it_ends():
     before, during = TimeRangeView(0.0, 1.0), TimeRangeView(5.0, 1.0)
     timeline = TimelineState()

@@ -31,7 +31,7 @@ RECORDING_SPEEDS = (1.0, 0.5, 0.25)
 CLOSEST, SMOOTHEST = 0.3, 12.0
 SMOOTHING = 0.5  # initial value
 NO_RECORDING = _("The recording could not be keyed")
-IDLE, CUTTING = _("Nothing is being recorded."), _("Stop cutting out first.")
+IDLE = _("Nothing is being recorded.")
 
 
 @named_action(
@@ -39,17 +39,17 @@ IDLE, CUTTING = _("Nothing is being recorded."), _("Stop cutting out first.")
     "R",
     icon="CIRCLE",
     hint=_("Record the next drag of a handle, while the timeline plays"),
-    why_disabled=unless(lambda session, _: not session.tools.is_cutting, CUTTING),
+    why_disabled=unless(
+        lambda session, project: session.tools.mode == "record" or project.layer.handles,
+        _("Click on the drawing to add a handle. Then drag it to record."),
+    ),
     active=lambda session: session.tools.mode == "record",
 )
-@with_project
-def toggle_recording_armed(session: Session, project: Project) -> None:
+def toggle_recording_armed(session: Session) -> None:
     """Arm the next drag of a handle for recording, or disarm it; earlier recordings stay."""
     accept_recording(session)
     if session.tools.mode == "record":
         session.tools.select("pose")
-    elif not project.layer.handles:
-        session.notices.show(_("Click on the drawing to add a handle. Then drag it to record."))
     else:
         playback.stop_playback(session)
         release_drag(session)

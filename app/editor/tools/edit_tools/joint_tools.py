@@ -58,7 +58,7 @@ class JointTool(Tool):
             if name in {draft.selected_joint, hot}:
                 yield CircleShape(centre=place, radius=1.7 * DOT * spot.em, role="text", width=0.1)
             if name == hot:
-                yield TagShape(text=name, place=place + 1.2j * spot.em)
+                yield TagShape(text=_(name), place=place + 1.2j * spot.em)
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:

@@ -85,7 +85,7 @@ class StiffnessBrushTool(Tool):
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class BoneTool(Tool):
-    """The pointer draws a bone from handle to handle; a click with Alt removes a bone."""
+    """The pointer draws a bone from handle to handle."""
 
     handle: int
     place: complex

@@ -72,6 +72,10 @@ def _draw_applied_motions(session: Session, look: Look, project: Project) -> lis
         small_text(
             look, _("Let the drawing walk, wave, slither or breathe. Show where its joints are.")
         )
+    kept = preset_setup.kept_motion_setup(session, project)
+    if kept is not None:
+        text = _("The joints and settings that you left for “{preset}” are kept.")
+        small_text(look, text.format(preset=kept.preset.label))
     for given in layer.motions:
         imgui.push_id(given.first)
         actions += _row(look, project, given)

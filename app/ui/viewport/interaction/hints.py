@@ -36,7 +36,8 @@ def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
         )
     if not session.tools.is_cutting and project.timeline.playhead.since is not None:
         return _("Space stops")
-    if session.tools.is_posing and not session.display.overlays.handles:
+    needs_handles = session.tools.is_posing or session.tools.mode == "bone"
+    if needs_handles and not session.display.overlays.handles:
         return _("The handles are hidden: {key} shows them").format(key=shown_keys(viewing.HANDLES))
     hints = [
         _format_hint(hint)
@@ -70,21 +71,22 @@ def draw_badges(
     """Draw special states: a pose without a key, the active tool, or the next step."""
     top = corner + ImVec2(room.x / 2, look.em)
     if project.unkeyed_pose is not None and not session.tools.is_cutting:
-        return _draw_pill(look, _("Unkeyed pose"), top, keys.insert_key_in_row)
+        return _draw_pill(look, _("Unkeyed pose"), top, room.x, keys.insert_key_in_row)
     mode = next(filter(None, (tool.mode(session, project) for tool in tools_of(session))), "")
     if mode:
         end = shown_keys(move_tool.return_to_posing)
         text = _("{mode}: {keys} goes back to posing").format(mode=mode, keys=end)
-        return _draw_pill(look, text, top)
+        return _draw_pill(look, text, top, room.x)
     if project.motion_job is not None:
         text = _("{step}: {keys} cancels the motion preset").format(
             step=project.motion_job.step_label, keys=shown_keys(apply_motion.cancel_motion_job)
         )
-        return _draw_pill(look, text, top)
+        return _draw_pill(look, text, top, room.x)
     step = find_first_step(project)
     if step is None or tutorials.is_tutorial_shown(session):
         return []
-    return _draw_pill(look, HINTS[step], corner + ImVec2(room.x / 2, room.y - 3.2 * look.em))
+    below = corner + ImVec2(room.x / 2, room.y - 3.2 * look.em)
+    return _draw_pill(look, HINTS[step], below, room.x)
 
 
 def find_first_step(project: Project) -> int | None:
@@ -98,21 +100,25 @@ def find_first_step(project: Project) -> int | None:
 
 
 def _draw_pill(
-    look: Look, text: str, place: ImVec2, remedy: ActionSpec | None = None
+    look: Look, text: str, place: ImVec2, room: float, remedy: ActionSpec | None = None
 ) -> list[Action]:
-    """Draw a text below a place. A warning has the button of a remedy beside it."""
+    """Draw a text below a place, wrapped to a width. A warning has a remedy's button beside it."""
     palette, draw_list = look.palette, imgui.get_window_draw_list()
-    padding, height = 0.7 * look.em, 2.1 * look.em
+    padding = 0.7 * look.em
     beside = imgui.calc_text_size(remedy.label).x + 1.6 * look.em if remedy else 0.0
-    size = imgui.calc_text_size(text)
+    wrap = max(room - 4 * padding - beside, look.em)
+    size = imgui.calc_text_size(text, wrap_width=wrap)
+    height = size.y + 1.1 * look.em
     low = place - ImVec2(size.x / 2 + padding + beside / 2, 0)
     high = low + ImVec2(size.x + 2 * padding + beside, height)
-    draw_list.add_rect_filled(low, high, colour_u32(palette.panel, 0.92), height / 2)
+    draw_list.add_rect_filled(low, high, colour_u32(palette.panel, 0.92), look.em)
     draw_list.add_rect(
-        low, high, colour_u32(palette.warning if remedy else palette.line), height / 2, 1.2
+        low, high, colour_u32(palette.warning if remedy else palette.line), look.em, 1.2
     )
     text_place = low + ImVec2(padding, (height - size.y) / 2)
-    draw_list.add_text(text_place, colour_u32(palette.warning if remedy else palette.text), text)
+    colour = colour_u32(palette.warning if remedy else palette.text)
+    font = imgui.get_font()
+    draw_list.add_text(font, imgui.get_font_size(), text_place, colour, text, wrap_width=wrap)
     if remedy is None:
         return []
     slim = imgui.get_frame_height() - 0.1 * look.em

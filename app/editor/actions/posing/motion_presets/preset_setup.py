@@ -59,7 +59,12 @@ def begin_motion_setup(session: Session, project: Project) -> None:
     if here:
         draft = setup_of_applied_motion(project.layer, here[-1])
     else:
-        draft = _put_away(session, project, frame) or _new(project.layer, frame)
+        kept = kept_motion_setup(session, project)
+        draft = (
+            _new(project.layer, frame)
+            if kept is None
+            else replace(kept, first=frame, past=(), selected_joint=None)
+        )
     session.tools.select(draft)
     # Motion setup has its own hints.
     session.tutorial.end()
@@ -85,13 +90,12 @@ def append_motion(session: Session, project: Project, given: AppliedMotion) -> N
         session.tools.select(replace(draft, applied_motion=None, first=given.last))
 
 
-def _put_away(session: Session, project: Project, frame: int) -> MotionSetup | None:
-    """Return the last closed draft if it has the same shape and no applied motion."""
+def kept_motion_setup(session: Session, project: Project) -> MotionSetup | None:
+    """Return the draft that was left last if it is of the active layer and was not applied."""
     draft, layer = session.tools.last_motion_setup, project.layer
     if draft is None or layer.motions or draft.applied_motion is not None:
         return None
-    is_same = (draft.layer, draft.domain) == (layer.id, layer.domain)
-    return replace(draft, first=frame, past=(), selected_joint=None) if is_same else None
+    return draft if (draft.layer, draft.domain) == (layer.id, layer.domain) else None
 
 
 def _new(layer: Layer, frame: int) -> MotionSetup:
@@ -238,12 +242,12 @@ def close_motion_setup(session: Session) -> None:
 
 @with_project
 def update_motion_setup(session: Session, project: Project) -> None:
-    """Drop a draft if another layer is active or its shape has changed; once a frame."""
+    """Leave a draft if another layer is active or its shape has changed; once a frame."""
     draft = session.tools.motion_setup
     if draft is None:
         return
     layer = project.layer
     if draft.layer != project.selection.active or draft.domain is not layer.domain or layer.still:
-        session.tools.drop_motion_setup()
+        session.tools.select("pose")
     elif draft.applied_motion is not None and draft.applied_motion not in layer.motions:
         session.tools.select(replace(draft, applied_motion=None))
