@@ -111,10 +111,12 @@ def undo(session: Session, project: Project) -> None:
         for gesture in (*drag.target_changes, drag.gesture):
             project.history.revert(gesture)
     else:
+        steps = project.history.revision
         commit_drag_now(session)
-        label = project.history.undo_label
-        project.history.undo()
-        _show_step_notice(session, UNDONE, label)
+        # A drag that fails leaves no step to undo.
+        if drag is None or project.history.revision != steps:
+            _show_step_notice(session, UNDONE, project.history.undo_label)
+            project.history.undo()
     _forget_what_is_gone(project)
     _go_to_change(session, project, before, unkeyed)
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 from bars import BENT
+from invariants import check_invariants
 
 from app.document import channel_commands, pose_channel
 from app.document.keyframe import Target
@@ -21,7 +22,9 @@ from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.poses import copying
 from app.errors import LissomError
+from app.solving import DragSolver
 from engine.deform import BoundedPull
+from engine.errors import EngineError
 
 INBETWEEN = 12  # a frame between the keys
 NEAR = 1.0  # pixels
@@ -154,6 +157,40 @@ def test_command_has_the_key_that_a_drag_displays(window, loose, name):
     editing.edit_document(window.session, command({pose_channel(0): {INBETWEEN}}))
     assert loose.drag is None
     assert loose.layer.key_frames == frames
+
+
+@pytest.fixture
+def fails(window, monkeypatch):
+    """Return a function after which the solver fails; nobody reads the report of it."""
+
+    def failing(*_arguments, **_options):
+        raise EngineError("no pose")
+
+    yield lambda: monkeypatch.setattr(DragSolver, "step_towards", failing)
+    assert POSING.complaint in window.session.notices.toasts[-1].text
+    window.session.notices.toasts.clear()
+
+
+def test_key_of_a_drag_that_fails_is_selected_no_more(window, loose, fails):
+    hand = hold(window, loose, INBETWEEN)
+    editing.select_keys(window.session, frozenset({INBETWEEN}))
+    fails()
+    hand.move(-70j)
+    window.settle()
+    assert loose.drag is None
+    check_invariants(window.session)
+    assert not loose.selection.keys
+
+
+def test_undo_of_a_drag_that_fails_takes_back_no_other_step(window, loose, fails):
+    hand, before = hold(window, loose), loose.history.document
+    with window.session.jobs.held(POSING):
+        hand.move(-70j)
+        release_drag(window.session)
+        fails()
+        editing.undo(window.session)
+    assert loose.drag is None
+    assert loose.document is before
 
 
 FAR = 1e9  # pixels: beyond all targets

@@ -12,6 +12,12 @@ POSING = JobKind(_("Posing"), _("This pose could not be found"), "hand")
 
 def drop_drag(session: Session, project: Project, drag: DragSession) -> None:
     """End a drag without a step; a result that is still computed is dropped."""
+    _end_drag(session, project, drag)
+    # The key that only the drag displayed may be selected.
+    project.selection.keep_existing(project.document)
+
+
+def _end_drag(session: Session, project: Project, drag: DragSession) -> None:
     if drag in project.pending.changes:
         project.pending.remove(drag)
         project.history.unfinished = None
@@ -20,7 +26,7 @@ def drop_drag(session: Session, project: Project, drag: DragSession) -> None:
 
 def commit_drag(session: Session, project: Project, drag: DragSession, pose: Pose) -> None:
     """End a drag, and write its final pose to the document as one undo step."""
-    drop_drag(session, project, drag)
+    _end_drag(session, project, drag)
     history, drag.preview = project.history, pose
     if not drag.is_keyed:
         unkeyed = PreviewPose(layer=drag.layer, frame=drag.frame, pose=pose)
