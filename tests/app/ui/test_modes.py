@@ -3,6 +3,7 @@
 import pytest
 from imgui_bundle import imgui
 
+from app.editor.actions import playback
 from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.motion_presets import joint_placement, preset_setup
@@ -10,7 +11,8 @@ from app.editor.actions.tracking import recording
 from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.pictures import make_still
-from app.editor.tools import move_tool
+from app.editor.tools import move_tool, tool_pointer
+from app.editor.tools.tool import PointerHit
 from app.ui.panels.motion_preset import tab
 from app.ui.viewport.interaction import hints
 
@@ -134,3 +136,24 @@ def test_badge_of_a_mode_is_within_a_narrow_viewport(window, monkeypatch):
     monkeypatch.undo()
     window.resize((1280, 800))
     assert widths["Drawing bones from handle to handle: Esc goes back to posing"] < rooms[-1]
+
+
+def test_a_press_moves_nothing_if_the_layer_is_made_still(window, loose):
+    session, place = window.session, complex(*loose.document.canvas) / 2
+    move_tool.toggle_move_tool(session)
+    tool_pointer.press_pointer(session, PointerHit(place=place))
+    gesture = session.tools.active_tool
+    make_still(session, loose.selection.active)
+    window.settle()
+    before = loose.document
+    gesture.move(session, place + 30j)
+    assert loose.document is before
+
+
+@pytest.mark.usefixtures("loose")
+def test_cutting_out_stops_playback(window):
+    session = window.session
+    playback.toggle_play(session)
+    window.frames(3)
+    cut_out_editing.toggle_cut_brush(session)
+    assert session.project.timeline.playhead.since is None

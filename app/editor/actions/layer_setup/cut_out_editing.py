@@ -9,7 +9,7 @@ import numpy as np
 from app.cut_out import CutLine, Mask
 from app.document import shape_commands
 from app.editor.action import do
-from app.editor.actions import editing
+from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action, unless
 from app.editor.error_reports import run_job
 from app.editor.parts.tools import CutTool
@@ -43,6 +43,7 @@ def toggle_cut_tool(session: Session, tool: CutTool | None) -> None:
     if session.tools.active_tool is None:
         session.tools.toggle(tool or "pose")
         if session.tools.is_cutting:
+            playback.stop_playback(session)
             session.display.focus_panel(PANEL)
 
 

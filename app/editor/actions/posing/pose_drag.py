@@ -56,7 +56,8 @@ def _change(
     drag = project.visible_drag
     if drag is None and project.drag is not None:
         project.pending.interrupt(project.drag)
-    if project.layer_runtime.shown is None or gesture in project.pending.ended_gestures:
+    is_fixed = project.layer_runtime.shown is None or project.layer.still
+    if is_fixed or gesture in project.pending.ended_gestures:
         return
     if drag is None or not drag.is_held:
         drag = _begin(session, project, gesture)
