@@ -3,12 +3,13 @@
 from dataclasses import replace
 
 import pytest
-from bars import BENT
+from bars import BENT, check_at_rest, drag_bar
 from invariants import check_invariants
 
 from app.document import channel_commands, pose_channel
 from app.document.keyframe import Target
-from app.editor.actions import editing, playback
+from app.editor.action import do
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import suggest_handles
 from app.editor.actions.posing.pose_drag import (
     drag_handles,
@@ -18,11 +19,15 @@ from app.editor.actions.posing.pose_drag import (
     set_targets,
 )
 from app.editor.actions.posing.pose_solver import POSING
+from app.editor.actions.project_files import saving
+from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.layer_selection import set_active_layer
+from app.editor.parts.timeline import KeyDrag, TimeRangeView
 from app.editor.poses import copying
 from app.errors import LissomError
 from app.solving import DragSolver
+from app.storage import load_project
 from engine.deform import BoundedPull
 from engine.errors import EngineError
 
@@ -157,6 +162,43 @@ def test_command_has_the_key_that_a_drag_displays(window, loose, name):
     editing.edit_document(window.session, command({pose_channel(0): {INBETWEEN}}))
     assert loose.drag is None
     assert loose.layer.key_frames == frames
+
+
+def test_key_moves_with_the_pose_at_rest_of_a_drag(window, loose):
+    goal = drag_bar(window, loose)
+    drag, keys = loose.drag, {pose_channel(0): frozenset({BENT})}
+    window.until(lambda: drag.preview is not None)
+    assert not drag.is_at_rest
+    held = KeyDrag(
+        start=BENT,
+        before=loose.document,
+        after=loose.document,
+        keys=keys,
+        channel=pose_channel(0),
+        pressed=BENT,
+        mark=keys,
+        copies=False,
+    )
+    timeline_drag.begin_timeline_drag(window.session, held, TimeRangeView(0.0, 48.0))
+    for frame in (BENT + 2, BENT + 4):
+        timeline_drag.move_timeline_drag(window.session, frame, pose_channel(0))
+    timeline_drag.end_timeline_drag(window.session)
+    assert loose.layer.key_frames == {0, BENT + 4}
+    check_at_rest(loose.document, goal, frame=BENT + 4)
+
+
+def test_saved_key_has_the_pose_at_rest_without_auto_key(window, loose, tmp_path):
+    path = tmp_path / "a.lissom"
+    saving.write_project(window.session, path, None)
+    viewing.toggle_auto_key(window.session)
+    window.settle()
+    goal = drag_bar(window, loose)
+    drag = loose.drag
+    window.until(lambda: drag.preview is not None)
+    assert not drag.is_at_rest
+    saving.key_and_save(window.session, do(saving.discard_project))
+    window.until(lambda: window.session.project is None)
+    check_at_rest(load_project(path), goal)
 
 
 @pytest.fixture

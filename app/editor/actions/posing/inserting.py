@@ -22,7 +22,6 @@ INSERTING = JobKind(_("Inserting a key"), _("The key could not be inserted"), "h
 def insert_key(session: Session, project: Project) -> None:
     """Insert a key of the shown pose at the present frame, in each selected layer."""
     playback.stop_playback(session)
-    commit_drag_now(session)
     if project.selection.other_layers:
         here, gesture = playback.current_frame(session, project), object()
         chosen = [project.document.layer(each) for each in project.selected_layers]
@@ -40,6 +39,7 @@ def insert_key_at(
     """Insert a key of the pose of a layer at a frame; inserts of a gesture are one undo step."""
     if layer not in project.runtimes.layers:
         return
+    commit_drag_now(session)
     unkeyed = project.history.preview_pose
     if unkeyed is not None and (unkeyed.layer, unkeyed.frame) == (layer, frame):
         gesture = gesture or object()

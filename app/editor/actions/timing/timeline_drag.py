@@ -22,6 +22,7 @@ from app.document import (
 )
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action
+from app.editor.actions.posing.pose_drag import commit_drag_now
 from app.editor.actions.timing.keys import edit_timing
 from app.editor.parts.timeline import (
     CycleDrag,
@@ -70,9 +71,13 @@ def scroll_rows(_: Session, project: Project, to: float) -> None:
 
 @with_project
 def begin_timeline_drag(
-    _: Session, project: Project, gesture: TimeGesture, strip: TimeRangeView
+    session: Session, project: Project, gesture: TimeGesture, strip: TimeRangeView
 ) -> None:
     """Begin a gesture; the shown range of time is fixed until it ends."""
+    if isinstance(gesture, TimeDrag) and project.drag is not None:
+        # The keys move with poses at rest.
+        commit_drag_now(session)
+        gesture = replace(gesture, before=project.document, after=project.document)
     project.timeline.begin_gesture(gesture, strip)
 
 
