@@ -41,12 +41,12 @@ class PasteDestination:
         """The reason why the layer cannot take the keys, as a sentence; None if it can."""
         layer, source = self.layer, self.copied.layer
         if layer.still:
-            text = _("“{layer}” is a still picture and has no poses.")
+            text = _("“{layer}” is a still picture. Make it posable first.")
             return text.format(layer=layer.name)
         if self.is_own or self.pairs:
             return None
         if not source.handles:
-            text = _("The copied layer “{layer}” has no handles, so its pose fits no other layer.")
+            text = _("The copied layer “{layer}” has no handles. Add handles and copy it again.")
             return text.format(layer=source.name)
         names = [handle.name for handle in source.handles]
         if len(names) > MOST_NAMED + 1:
@@ -115,7 +115,7 @@ def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMod
     found = _find_paste_destinations(session, project, way)
     if not found:
         names = ", ".join(f"“{each.layer.name}”" for each in copied[:MOST_NAMED])
-        text = _("No layer here has the name of a copied layer: {names}.")
+        text = _("No layer here is named like a copied layer. Name a layer {names} first.")
         return text.format(names=names)
     reasons = [landing.disabled_reason for landing in found]
     if all(reasons):

@@ -32,6 +32,8 @@ class MoveTool(PoseTool):
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if session.tools.mode == "move":
             root = _root_parent(session, project, spot.layer)
+            if root.still or root.locked:
+                return ()
             return (Hint(_("drag to move {layer}").format(layer=root.name)),)
         return (Hint(_("drag to move the whole layer"), "ctrl+shift"),) if _is_beside(spot) else ()
 
@@ -110,11 +112,9 @@ def _set_root_parent_active(session: Session, project: Project, layer: int | Non
     """Make a layer's topmost parent active; if it cannot move, show why and return False."""
     root = _root_parent(session, project, layer)
     if root.still or root.locked:
-        text = _("{layer} is locked: it stays where it is, with all layers attached to it.")
+        text = _("{layer} is locked and stays where it is. Unlock it in the Layers tab first.")
         if root.still:
-            text = _(
-                "{layer} is a still picture: it stays where it is, with all layers attached to it."
-            )
+            text = _("{layer} is a still picture and stays where it is. Make it posable first.")
         session.notices.show(text.format(layer=root.name))
         return False
     set_active_layer(session, root.id)

@@ -86,6 +86,17 @@ def test_hint_offers_no_handle_on_a_still_picture(window, loose, hint_at):
     assert "handle" not in hint_at(complex(*loose.document.canvas) / 2)
 
 
+def test_hint_promises_no_move_of_a_still_picture(window, loose, hint_at):
+    make_still(window.session, loose.selection.active)
+    move_tool.toggle_move_tool(window.session)
+    window.settle()
+    assert "move" not in hint_at(complex(*loose.document.canvas) / 2)
+    window.session.notices.toasts = []
+    move_tool.nudge_layer(window.session, 1.0)
+    (toast,) = window.session.notices.toasts
+    assert toast.text.endswith("Make it posable first.")
+
+
 def test_hint_while_a_drag_is_recorded_names_no_ring(window, loose, hint_at):
     recording.toggle_recording_armed(window.session)
     shown = loose.layer_runtime.shown

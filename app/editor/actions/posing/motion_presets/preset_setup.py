@@ -221,7 +221,7 @@ def apply_motion_disabled_reason(session: Session, project: Project) -> str | No
     """Return why the draft cannot be applied; None if it can."""
     draft = session.tools.motion_setup
     if draft is None:
-        return _("There is no motion to apply.")
+        return _("Choose a motion preset first.")
     if draft.missing_joints:
         text = ngettext(
             "{motion} needs {joints}: click on this joint in the diagram to add it.",
@@ -231,7 +231,7 @@ def apply_motion_disabled_reason(session: Session, project: Project) -> str | No
         missing = ", ".join(map(_, draft.missing_joints))
         return text.format(motion=draft.preset.label, joints=missing)
     if is_applied_motion_edited(session, project) and not draft.replaces_edits:
-        return _("You edited the motion by hand. Applying it again would delete your edits.")
+        return _("You edited the motion by hand. Tick “Replace edits” to apply it again.")
     return None
 
 
