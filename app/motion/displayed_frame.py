@@ -122,7 +122,7 @@ def show(
     if not fitting:
         raise ValueError("none of the stores is of the layer's domain")
     store = (*exact, fitting[-1])[0]
-    mesh, near = store.mesh, None if exact else store.nearest_pose(clip, moment)
+    mesh, near = store.mesh, None if exact else pose or store.nearest_pose(clip, moment)
     if near is not None and earlier is not None and _is_earlier_state(earlier, frame, store, clip):
         return _kept(earlier, clip)
     triangles = mesh.order.triangles(clip, frame)

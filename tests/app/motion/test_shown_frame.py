@@ -5,7 +5,8 @@ import numpy as np
 from documents import CENTRE, disc_document
 from shapes import regular_polygon
 
-from app.document import clip_of
+from app.document import Track, TrackKey, clip_of, track_commands
+from app.document.channels.easing import LINEAR
 from app.document.commands import (
     handle_commands,
 )
@@ -13,7 +14,7 @@ from app.document.commands.keys import (
     key_commands,
 )
 from app.document.commands.layers import layer_commands
-from app.motion import DeformMesh, InbetweenCache, show
+from app.motion import CorrectedFrames, DeformMesh, InbetweenCache, show
 from engine.domain import MeshedDomain
 from engine.domain.meshing.triangulation import triangulate
 
@@ -59,6 +60,26 @@ def test_the_frame_before_a_change_stays_until_the_new_one_is_known():
     store.set_needed_clips([clip], [], 12)
     store.mark_failed("in-betweens", clip)
     assert show(clip, 12, None, [store], kept).placeholder in (first, bent)
+
+
+def test_key_with_a_track_waits_for_what_its_correction_needs():
+    document = handle_commands.add_handle(0, CENTRE)(disc_document())
+    layer = document.layers[0]
+    key = TrackKey(frame=0, place=5 + 0j, easing=LINEAR)
+    track = Track(handles=(layer.handles[0].id,), keys=(key,))
+    document = track_commands.put_track(0, track)(document)
+    clip = clip_of(document, 0)
+    store, corrected = InbetweenCache(mesh=DeformMesh.coarse(layer.domain)), CorrectedFrames(clip)
+    corrected.take(corrected.missing_here(document, 0, {})())
+    shown = show(clip, 0, None, [store], None, corrected)
+    pose = layer.keys[0].pose
+    assert shown.placeholder is pose
+    assert not shown.is_current
+    store.add(store.segments_job(clip, [])())
+    shown = show(clip, 0, None, [store], shown, corrected)
+    assert shown.is_current
+    (moved,) = shown.handle_positions - layer.handles[0].position
+    np.testing.assert_allclose(moved, 5, atol=0.05)
 
 
 def test_one_exact_in_between_stands_in_for_others_nearby():
