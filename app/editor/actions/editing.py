@@ -238,10 +238,11 @@ def movable_keys(document: Document) -> KeysByChannel:
 
 
 def _has_deletable(session: Session, project: Project) -> bool:
-    """Return whether keys, handles, a joint of a motion preset or a channel are selected."""
+    """Return whether keys, visible handles, a joint of a motion or a channel are selected."""
     joint = session.tools.motion_setup is not None and session.tools.motion_setup.selected_joint
     is_channel = session.display.is_timeline_focused and project.channel.kind is not POSE
-    return bool(joint or project.selection.handles or project.selection.keys or is_channel)
+    handles = project.selection.handles and not session.tools.is_cutting
+    return bool(joint or handles or project.selection.keys or is_channel)
 
 
 @named_action(

@@ -95,11 +95,13 @@ def _close_menu() -> bool:
 
 
 def _nudges(session: Session) -> list[Action]:
-    if session.project is None or not (
-        session.tools.mode == "move" or session.project.selection.handles
-    ):
+    is_moving = session.tools.mode == "move"
+    # While cutting out, handles are hidden.
+    if session.project is None or session.tools.is_cutting:
         return []
-    nudge = move_tool.nudge_layer if session.tools.mode == "move" else nudge_handles
+    if not (is_moving or session.project.selection.handles):
+        return []
+    nudge = move_tool.nudge_layer if is_moving else nudge_handles
     step = 10.0 if imgui.get_io().key_shift else 1.0
     return [
         do(nudge, step * direction)

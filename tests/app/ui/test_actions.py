@@ -87,7 +87,7 @@ STATES = {
     "playing": (playback.toggle_play, set(), set()),
     "dragging": (drag_handle, set(), {"Add bone", "Group"}),
     "moving": (move_tool.toggle_move_tool, {"Back to posing"}, set()),
-    "cutting out": (cut_out_editing.toggle_cut_brush, BRUSH, set()),
+    "cutting out": (cut_out_editing.toggle_cut_brush, BRUSH, {"Delete"}),
     "making stiff": (stiffness_editing.MAKE_STIFF.action.apply, BRUSH, set()),
     "drawing bones": (stiffness_editing.DRAW_BONES.action.apply, {"Back to posing"}, set()),
     "setting joints": (

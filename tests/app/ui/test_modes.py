@@ -3,7 +3,7 @@
 import pytest
 from imgui_bundle import imgui
 
-from app.editor.actions import playback
+from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.motion_presets import joint_placement, preset_setup
@@ -168,3 +168,13 @@ def test_cutting_out_stops_playback(window):
     window.frames(3)
     cut_out_editing.toggle_cut_brush(session)
     assert session.project.timeline.playhead.since is None
+
+
+def test_keys_change_no_hidden_handle_while_cutting_out(window, loose):
+    editing.select_handles(window.session, frozenset({loose.layer.handles[0].id}))
+    cut_out_editing.toggle_cut_brush(window.session)
+    before = loose.document
+    for key in (imgui.Key.left_arrow, imgui.Key.delete):
+        window.run(lambda robot, key=key: robot.key_press(key))
+        window.settle()
+    assert loose.document is before
