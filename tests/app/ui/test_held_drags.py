@@ -10,7 +10,7 @@ from app.document import channel_commands, pose_channel
 from app.document.keyframe import Target
 from app.editor.action import do
 from app.editor.actions import editing, playback, viewing
-from app.editor.actions.posing.handles import suggest_handles
+from app.editor.actions.posing.handles import add_handle, suggest_handles
 from app.editor.actions.posing.pose_drag import (
     drag_handles,
     move_pose,
@@ -265,3 +265,19 @@ def test_suggestions_go_though_one_is_dragged(window, loose):
     take_back.apply(window.session)
     window.settle()
     assert loose.layer.handles == before
+
+
+def test_escape_ends_the_drag_of_a_handle_that_goes_with_it(window, loose):
+    before, gesture = loose.document, object()
+    playback.scrub(window.session, BENT)
+    window.settle()
+    place = complex(loose.layer_runtime.shown.positions.mean())
+    add_handle(window.session, place, gesture=gesture)
+    (added,) = loose.selection.handles
+    drag_handles(window.session, {added: Target(position=place + 20j)}, gesture=gesture)
+    set_targets(window.session, {1: Target(position=place_of(loose, 1) + 9j)})
+    window.frames(2)
+    editing.revert_gesture(window.session, gesture)
+    window.settle()
+    assert loose.document is before
+    assert loose.drag is None

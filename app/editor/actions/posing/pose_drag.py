@@ -157,12 +157,12 @@ def solve_pose_again(
 
 @with_project
 def revert_drag(session: Session, project: Project, gesture: object) -> None:
-    """Undo the targets of a gesture; a drag without other targets ends."""
+    """Undo the targets of a gesture; the drag that it began, or without other targets, ends."""
     drag = project.drag
     if drag is not None and gesture in drag.target_changes:
         drag.revert(gesture)
         drag.is_held = False
-        if not drag.target_changes:
+        if gesture is drag.gesture or not drag.target_changes:
             drop_drag(session, project, drag)
             project.history.revert(drag.gesture)
 
