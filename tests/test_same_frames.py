@@ -10,8 +10,7 @@ from app.storage import decode_picture, load_project
 from app.storage.assets import sample_images
 
 NEAR = 0.05  # thousandths of the drawing's longer side
-NAMES = {path.stem for path in sample_images().glob("*.lissom")}
-QUICK = "ring"
+OTHERS = sorted({path.stem for path in sample_images().glob("*.lissom")} - {"ring"})
 SHARES = (0.0, 0.13, 0.4, 0.5, 0.77, 1.0)  # of the animation, at which frames are compared
 
 
@@ -30,8 +29,7 @@ def exported(document, points, frames):
 
 
 @pytest.mark.parametrize(
-    "name",
-    [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in NAMES],
+    "name", ["ring", *(pytest.param(name, marks=pytest.mark.long) for name in OTHERS)]
 )
 def test_window_shows_the_frames_of_an_export(name, tmp_path):
     document = load_project(sample_images() / f"{name}.lissom")

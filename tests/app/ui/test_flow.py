@@ -154,7 +154,7 @@ def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
 
 def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window, bar):
     session = window.session
-    drag_handles(session, {1: Target(position=handle_places(bar)[1] + 150j)})
+    drag_handles(session, {1: Target(position=handle_places(bar)[1] + 150j)}, gesture="hand")
     window.settle()
     posed = bar.document
     assert bar.visible_drag.is_held
@@ -205,7 +205,7 @@ def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
 
 def test_a_shape_that_is_held_back_is_left_alone_when_the_hand_lets_go(window, bar):
     session = window.session
-    drag_handles(session, {1: Target(position=handle_places(bar)[1] + 9000)})
+    drag_handles(session, {1: Target(position=handle_places(bar)[1] + 9000)}, gesture="hand")
     window.settle()
     held = bar.layer_runtime.shown.positions
     assert bar.visible_drag.solver.state.status is Status.AT_LIMITS

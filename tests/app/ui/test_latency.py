@@ -1,5 +1,6 @@
 """How soon the picture answers, in frames."""
 
+from functools import partial
 from itertools import count
 
 import numpy as np
@@ -22,12 +23,14 @@ from app.motion import PoseSampler
 from app.motion.inbetweens.auto_pins import AutoPins
 from app.motion.inbetweens.segment_keys import segment_key
 
+HAND = object()
+
 
 def pull(window, bar, by):
     """Pull a handle, and let the solver be as quick as can be."""
     target = Target(position=bar.document.layers[0].handle(1).position + by)
     assert window.session.jobs.wait_until_idle()
-    window.act(drag_handles, {1: target})
+    window.act(partial(drag_handles, gesture=HAND), {1: target})
     assert window.session.jobs.wait_until_idle()
     window.frames()
     return target
