@@ -128,7 +128,7 @@ def check(bent):
             return
         if shown.pose is None and not isinstance(shown.placeholder, Pose):
             if shown.placeholder is not None:
-                assert shown.placeholder.pair == segment_key(clip, moment.segment)
+                assert shown.placeholder.segment_key == segment_key(clip, moment.segment)
                 moment = moment._replace(weight=shown.placeholder.weight)
             pins = AutoPins(clip, clip.layer.variant, sampler)
             exact = pins.inbetweens(moment.segment, sampler)
