@@ -23,7 +23,8 @@ from app.editor.actions.layer_setup.layer_runtimes import update_layer_runtimes
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement
 from app.editor.actions.posing.pose_commit import drop_drag
-from app.editor.actions.posing.pose_drag import commit_drag_now, revert_drag
+from app.editor.actions.posing.pose_drag import revert_drag
+from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.texts import N_, _
@@ -112,7 +113,7 @@ def undo(session: Session, project: Project) -> None:
             project.history.revert(gesture)
     else:
         steps = project.history.revision
-        commit_drag_now(session)
+        finish_drag(session, project)
         # A drag that fails leaves no step to undo.
         if drag is None or project.history.revision != steps:
             _show_step_notice(session, UNDONE, project.history.undo_label)

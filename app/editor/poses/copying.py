@@ -19,7 +19,8 @@ from app.document import (
 from app.editor import pending_changes
 from app.editor.actions import playback
 from app.editor.actions.action_spec import named_action, unless
-from app.editor.actions.posing.pose_drag import commit_drag_now, pose_at_playhead
+from app.editor.actions.posing.pose_drag import pose_at_playhead
+from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.parts.clipboard import CopiedChannel, CopiedKeys, CopiedTrack
 from app.editor.poses import pose_insertion
 from app.editor.project import Project
@@ -75,7 +76,7 @@ def copy_all_poses(session: Session, project: Project) -> None:
 
 def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> None:
     """Copy the poses of layers at the playhead; the worker solves for in-betweens."""
-    commit_drag_now(session)
+    finish_drag(session, project)
     frame, document = playback.current_frame(session, project), project.document
     layers = [
         each
@@ -125,7 +126,7 @@ def is_copying_keys(session: Session, project: Project) -> bool:
 @with_project
 def copy_keys(session: Session, project: Project) -> None:
     """Copy the selected keys."""
-    commit_drag_now(session)
+    finish_drag(session, project)
     document, keys, tracks, others = project.document, [], [], []
     for channel, at in project.selection.keys.items():
         layer = None if channel.layer is None else document.layer(channel.layer)

@@ -17,7 +17,8 @@ from app.document import (
 )
 from app.editor.actions import playback
 from app.editor.actions.posing.inserting import solve_nearest_pose
-from app.editor.actions.posing.pose_drag import commit_drag_now, pose_at_playhead
+from app.editor.actions.posing.pose_drag import pose_at_playhead
+from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import JobKind
@@ -107,7 +108,7 @@ def request_pose_at_playhead(
     session: Session, project: Project, kind: JobKind, take: PoseHandler
 ) -> None:
     """Pass the pose at the playhead to `take`; for an in-between the worker solves for it."""
-    commit_drag_now(session)
+    finish_drag(session, project)
     layer, pose = project.layer, pose_at_playhead(session, project)
     if pose is not None:
         take(layer, pose)

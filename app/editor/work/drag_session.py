@@ -145,11 +145,7 @@ class DragSession(PendingChange):
             return document
         known = self._previewed
         if known is None or known[0] is not document or known[1] is not pose:
-            command = (
-                key_commands.replace_key_pose(self.layer, self.frame, pose)
-                if self.frame in document.layer(self.layer).key_frames
-                else key_commands.insert_key(self.layer, self.frame, pose, easing=self.easing)
-            )
+            command = key_commands.insert_pose(self.layer, self.frame, pose, self.easing)
             known = self._previewed = document, pose, command(document)
         return known[2]
 

@@ -15,7 +15,7 @@ from app.document import (
 )
 from app.editor.action import do
 from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
-from app.editor.actions.posing.pose_drag import commit_drag_now
+from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.motion import DisplayedFrame
@@ -50,7 +50,7 @@ def remove_handles(
     gesture: object | None = None,
 ) -> None:
     """Delete handles; poses stay."""
-    commit_drag_now(session)
+    finish_drag(session, project)
     command = handle_commands.remove_handles(project.selection.active, identities)
     project.history.do(command, gesture=gesture or object())
     project.selection.deselect_handles(identities)
@@ -101,7 +101,7 @@ def _take_suggestions_back(
     """Remove the suggested handles; later edits stay."""
     if session.project is not project:
         return
-    commit_drag_now(session)
+    finish_drag(session, project)
     project.history.revert(gesture)
     remaining = added & {handle.id for handle in project.layer.handles}
     if remaining:

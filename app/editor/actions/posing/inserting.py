@@ -7,7 +7,7 @@ from app.document import Clip, Pose, PreviewPose, clip_of
 from app.editor import pending_changes
 from app.editor.actions import playback
 from app.editor.actions.posing.pose_commit import key_pose_command
-from app.editor.actions.posing.pose_drag import commit_drag_now
+from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
@@ -39,7 +39,7 @@ def insert_key_at(
     """Insert a key of the pose of a layer at a frame; inserts of a gesture are one undo step."""
     if layer not in project.runtimes.layers:
         return
-    commit_drag_now(session)
+    finish_drag(session, project)
     unkeyed = project.history.preview_pose
     if unkeyed is not None and (unkeyed.layer, unkeyed.frame) == (layer, frame):
         gesture = gesture or object()

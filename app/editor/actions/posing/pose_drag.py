@@ -85,12 +85,6 @@ def release_drag_forced(session: Session, project: Project) -> None:
     release_drag(session)
 
 
-@with_project
-def commit_drag_now(session: Session, project: Project) -> None:
-    """End an unfinished drag, and commit its pose at rest."""
-    finish_drag(session, project)
-
-
 def set_targets(session: Session, targets: Mapping[int, Target]) -> None:
     """Set targets of handles from a field of the panel."""
     drag_handles(session, targets)

@@ -22,7 +22,7 @@ from app.document import (
 )
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action
-from app.editor.actions.posing.pose_drag import commit_drag_now
+from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.actions.timing.keys import edit_timing
 from app.editor.parts.timeline import (
     CycleDrag,
@@ -76,7 +76,7 @@ def begin_timeline_drag(
     """Begin a gesture; the shown range of time is fixed until it ends."""
     if isinstance(gesture, TimeDrag) and project.drag is not None:
         # The keys move with poses at rest.
-        commit_drag_now(session)
+        finish_drag(session, project)
         gesture = replace(gesture, before=project.document, after=project.document)
     project.timeline.begin_gesture(gesture, strip)
 

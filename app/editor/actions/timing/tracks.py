@@ -22,7 +22,7 @@ from app.document import (
 from app.editor import pending_changes
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
-from app.editor.actions.posing.pose_drag import commit_drag_now
+from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.actions.tracking.track_space import find_key_frame
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -61,7 +61,7 @@ def key_handles_at_playhead(session: Session, project: Project, handles: Sequenc
     Handles without a track get a shared track relative to the pose; its first key has offset 0.
     """
     playback.stop_playback(session)
-    commit_drag_now(session)
+    finish_drag(session, project)
     layer, gesture = project.layer, object()
     new = tuple(identity for identity in handles if layer.track_of(identity) is None)
     if new:
