@@ -11,11 +11,6 @@ from app.motion.corrected_frames import (
     reuse_corrections as reuse_corrections,
 )
 from app.motion.deform_mesh import DeformMesh as DeformMesh, MeshPoints as MeshPoints
-from app.motion.displayed_frame import (
-    DisplayedFrame as DisplayedFrame,
-    place_displayed_frames as place_displayed_frames,
-    show as show,
-)
 from app.motion.extents.extent import (
     BoundingBox as BoundingBox,
     bounding_box as bounding_box,
@@ -40,6 +35,11 @@ from app.motion.inbetweens.frame_corrector import (
 )
 from app.motion.inbetweens.pose_sampler import PoseSampler as PoseSampler
 from app.motion.inbetweens.spring_offsets import ParentMotion as ParentMotion
+from app.motion.layer_frame import (
+    LayerFrame as LayerFrame,
+    evaluate_layer as evaluate_layer,
+    place_displayed_frames as place_displayed_frames,
+)
 from app.motion.parenting.attach import (
     anchor_or_default as anchor_or_default,
     attach_in_place as attach_in_place,

@@ -4,7 +4,7 @@ from app.document import clip_of
 from app.editor import pending_changes
 from app.editor.project import Project
 from app.editor.session import Session
-from app.motion import DisplayedFrame
+from app.motion import LayerFrame
 
 
 def unrest(session: Session) -> str:
@@ -55,7 +55,7 @@ def _shown(project: Project) -> list[str]:
     return lines
 
 
-def _plays(project: Project, shown: DisplayedFrame) -> bool:
+def _plays(project: Project, shown: LayerFrame) -> bool:
     """Tell whether a frame only plays, so that nothing finds its corrections."""
     return project.timeline.playhead.since is not None and shown.placeholder is None
 

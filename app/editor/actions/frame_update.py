@@ -33,13 +33,13 @@ from app.motion import (
     MotionPaths,
     ParentTransforms,
     SeriesBuild,
+    evaluate_layer,
     extent_key,
     find_parent_motion,
     measure_extent,
     parenting_key,
     place_displayed_frames,
     reuse_corrections,
-    show,
     trace_paths,
 )
 from app.reports import CorrectedSample, measure_curves
@@ -540,11 +540,11 @@ def _show(session: Session, project: Project) -> None:
             poses[layer] = pose
         fine = [runtime.fine] if runtime.fine is not None and not is_moving else []
         stores = [*fine, runtime.store]
-        shown[layer] = show(clip, frame, pose, stores, runtime.shown, runtime.corrected)
+        shown[layer] = evaluate_layer(clip, frame, pose, stores, runtime.shown, runtime.corrected)
         if comparison is not None:
             earlier, other = comparison.shown or shown[layer], comparison.clip(document)
             # An unkeyed pose is the same in both methods.
-            comparisons[layer] = show(other, frame, pose, [runtime.store], earlier)
+            comparisons[layer] = evaluate_layer(other, frame, pose, [runtime.store], earlier)
     known = project.measured.parent_transforms.value
     for layer, attached in place_displayed_frames(
         document, shown, project.current_parent_transforms, poses, known

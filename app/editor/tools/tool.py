@@ -13,7 +13,7 @@ from app.editor.overlay_shapes import Cursor, OverlayShape
 from app.editor.parts.tools import CLICK, Hint
 from app.editor.project import Project
 from app.editor.session import Session
-from app.motion import DisplayedFrame
+from app.motion import LayerFrame
 from engine.arrays import Complexes
 
 
@@ -117,7 +117,7 @@ def to_scene(project: Project, place: complex) -> complex:
     return place if shown is None else complex(shown.placement.apply(np.array([place]))[0])
 
 
-def scene_outlines(shown: DisplayedFrame) -> list[Complexes]:
+def scene_outlines(shown: LayerFrame) -> list[Complexes]:
     """Return the deformed outline and holes of a layer, in scene coordinates."""
     # The vertices of a mesh begin with those of the loops.
     ends = np.cumsum([len(loop) for loop in shown.mesh.domain.loops])

@@ -7,7 +7,7 @@ from app.cut_out import CutOut
 from app.document import Baseline, Clip, Document, History, Layer, PictureFile, Variant, clip_of
 from app.editor.work.derived import Derived
 from app.editor.work.revised import Revised
-from app.motion import CorrectedFrames, DeformMesh, DisplayedFrame, InbetweenCache, needs_correction
+from app.motion import CorrectedFrames, DeformMesh, InbetweenCache, LayerFrame, needs_correction
 from app.solving import Rig
 from app.storage import CutOutResult, Picture, cut_picture, decode_picture
 from engine.arrays import Bytes
@@ -20,7 +20,7 @@ class ComparisonRuntime:
     original: Layer  # the layer with its own method
     layer: Layer  # the layer with the other variant, if the method is a variant
     method: Variant | Baseline
-    shown: DisplayedFrame | None = None
+    shown: LayerFrame | None = None
 
     def clip(self, document: Document) -> Clip:
         """Return the layer in the time of its scene."""
@@ -38,7 +38,7 @@ class LayerRuntime:
     # In-betweens on a coarse mesh, and on the layer's own mesh if it is finer and prepared.
     store: InbetweenCache
     fine: InbetweenCache | None = None
-    shown: DisplayedFrame | None = None  # None before the first frame of the window
+    shown: LayerFrame | None = None  # None before the first frame of the window
     corrected: CorrectedFrames | None = None  # corrections of the layer's frames
     rig: Rig | None = None  # for solving poses; None before the first one
     cut: Derived[CutOut, CutOutResult]  # the picture after the newest cut-out

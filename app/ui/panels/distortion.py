@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from app.editor import Action, HeatMap, Project, Session, do
 from app.editor.actions import viewing
-from app.motion import DisplayedFrame
+from app.motion import LayerFrame
 from app.render import heat_colormap
 from app.texts import _
 from app.ui.methods import METHODS
@@ -108,7 +108,7 @@ class _Histogram(NamedTuple):
 
 
 @lru_cache(maxsize=2)
-def _histogram(shown: DisplayedFrame, heat_map: HeatMap, low: float, high: float) -> _Histogram:
+def _histogram(shown: LayerFrame, heat_map: HeatMap, low: float, high: float) -> _Histogram:
     values = measure_distortion(shown, heat_map)
     ends = np.array([low, high, values.min(), values.max()])
     shares, edges = np.histogram(
@@ -137,7 +137,7 @@ def _colours(first: float, last: float, low: float, high: float) -> tuple[int, .
     return tuple(imgui.IM_COL32(red, green, blue, 255) for red, green, blue in rows.tolist())
 
 
-def _spread(look: Look, project: Project, shown: DisplayedFrame, heat_map: HeatMap) -> None:
+def _spread(look: Look, project: Project, shown: LayerFrame, heat_map: HeatMap) -> None:
     """Draw the histogram of distortion over the area, in the colours of the heat map."""
     low, high = heat_limits(project, heat_map)
     histogram = _histogram(shown, heat_map, low, high)

@@ -13,7 +13,7 @@ from app.document import (
     without_foreign_clips,
 )
 from app.editor import HeatMap, LayerRuntime, Project, Session
-from app.motion import DeformMesh, DisplayedFrame
+from app.motion import DeformMesh, LayerFrame
 from app.render import Heat, Painted, Renderer, Scene, Wireframe
 from app.render.gpu.target import RenderTarget
 from app.ui.style.theme import PALETTES
@@ -161,9 +161,7 @@ def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
             return 0.0, bounds.k
 
 
-def _scene(
-    session: Session, project: Project, shown: DisplayedFrame, drawing: GpuResources
-) -> Scene:
+def _scene(session: Session, project: Project, shown: LayerFrame, drawing: GpuResources) -> Scene:
     palette = PALETTES[session.settings.preferences.theme]
     overlays = session.display.overlays
     runtimes = project.runtimes.layers.values()
@@ -223,7 +221,7 @@ def _comparison_scene(
 def _posed(
     session: Session,
     project: Project,
-    shows: Mapping[int, DisplayedFrame | None],
+    shows: Mapping[int, LayerFrame | None],
     drawing: GpuResources,
     *,
     number: int = 0,
@@ -256,7 +254,7 @@ def _posed(
 
 
 def _tinted(
-    session: Session, project: Project, drawing: GpuResources, layer: Layer, shown: DisplayedFrame
+    session: Session, project: Project, drawing: GpuResources, layer: Layer, shown: LayerFrame
 ) -> Floats:
     """Return the colour values of a layer's vertices, (v,), −1 to 1."""
     if layer.id != project.selection.active:

@@ -8,7 +8,7 @@ from imgui_bundle import ImVec4
 from app.document import Clip, Track, misses_target, pinned_handles, segment_time_at, track_at
 from app.editor import Project, Session
 from app.editor.tools.tool import scene_outlines
-from app.motion import BoundingBox, DeformMesh, DisplayedFrame, MeshPoints, MotionPaths
+from app.motion import BoundingBox, DeformMesh, LayerFrame, MeshPoints, MotionPaths
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
 from app.ui.style.theme import Palette, interface_scale, pixel_density
 from app.ui.viewport.paths import mark_path
@@ -33,7 +33,7 @@ def to_rgba(colour: ImVec4, alpha: float = 1.0) -> Colour:
 
 
 def mark_all(
-    session: Session, project: Project, shown: DisplayedFrame, palette: Palette
+    session: Session, project: Project, shown: LayerFrame, palette: Palette
 ) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
     """Return the lines and discs that mark the shown frame, in drawing order."""
     scale = pixel_scale(session)
@@ -63,7 +63,7 @@ def mark_all(
     return (*lines, *handle_lines), (*dots, *faint, *below, *discs)
 
 
-def _handles(session: Session, project: Project, shown: DisplayedFrame) -> list[HandleMark]:
+def _handles(session: Session, project: Project, shown: LayerFrame) -> list[HandleMark]:
     layer, targets = shown.clip.layer, find_off_target(project, shown)
     return [
         HandleMark(
@@ -78,7 +78,7 @@ def _handles(session: Session, project: Project, shown: DisplayedFrame) -> list[
     ]
 
 
-def find_off_target(project: Project, shown: DisplayedFrame) -> dict[int, complex]:
+def find_off_target(project: Project, shown: LayerFrame) -> dict[int, complex]:
     """Return the pose's targets of handles that have not arrived, by handle id.
 
     Handles with tracks or springs leave their pose's target, and are omitted.
@@ -99,7 +99,7 @@ def find_off_target(project: Project, shown: DisplayedFrame) -> dict[int, comple
     return {**short, **_find_off_track(shown)}
 
 
-def _find_off_track(shown: DisplayedFrame) -> dict[int, complex]:
+def _find_off_track(shown: LayerFrame) -> dict[int, complex]:
     """Return the track's targets that handles cannot reach, by handle id."""
     layer, found = shown.clip.layer, shown.correction
     if found is None or shown.placeholder is not None:
@@ -109,13 +109,13 @@ def _find_off_track(shown: DisplayedFrame) -> dict[int, complex]:
     }
 
 
-def _acting(shown: DisplayedFrame) -> list[Track]:
+def _acting(shown: LayerFrame) -> list[Track]:
     """Return the tracks that have a target in the shown frame."""
     clip = shown.clip
     return [track for track in clip.layer.tracks if track_at(track, clip, shown.frame) is not None]
 
 
-def find_anchor(project: Project, shown: DisplayedFrame) -> complex | None:
+def find_anchor(project: Project, shown: LayerFrame) -> complex | None:
     """Return the anchor's place in the shown frame; None if a handle marks it or none exists."""
     layer, sampler = shown.clip.layer, project.layer_runtime.store.sampler
     rest = layer.anchor
@@ -151,7 +151,7 @@ def _still(clip: Clip) -> Booleans:
     return pinned_handles(clip)
 
 
-def find_auto_pinned(shown: DisplayedFrame) -> frozenset[int]:
+def find_auto_pinned(shown: LayerFrame) -> frozenset[int]:
     """Return the ids of auto-pinned handles between the two keys around the shown frame.
 
     Handles that their own tracks move there are omitted.
@@ -165,7 +165,7 @@ def find_auto_pinned(shown: DisplayedFrame) -> frozenset[int]:
     return frozenset(handle.id for handle, stays in pairs if stays and handle.id not in moved)
 
 
-def _grounds(session: Session, project: Project, shown: DisplayedFrame, scale: float) -> list[Line]:
+def _grounds(session: Session, project: Project, shown: LayerFrame, scale: float) -> list[Line]:
     """Return a short line below each auto-pinned handle, like a ground under its foot."""
     per_pixel = scale / project.view_on(session.display.screen).scale
     stays, lines = find_auto_pinned(shown), list[Line]()
@@ -193,7 +193,7 @@ def _others(project: Project, scale: float) -> tuple[Disc, ...]:
     )
 
 
-def _on(shown: DisplayedFrame, place: complex) -> complex:
+def _on(shown: LayerFrame, place: complex) -> complex:
     """Return a place of the layer in scene coordinates."""
     return complex(shown.placement.apply(np.array([place]))[0])
 
@@ -243,14 +243,14 @@ def _paths(
     return lines, tuple(discs)
 
 
-def _outlines(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
+def _outlines(shown: LayerFrame, palette: Palette, scale: float) -> list[Line]:
     return [
         Line(points=points, colour=to_rgba(palette.accent), width=1.5 * scale, closed=True)
         for points in scene_outlines(shown)
     ]
 
 
-def _cages(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
+def _cages(shown: LayerFrame, palette: Palette, scale: float) -> list[Line]:
     """Return the cages around the shape at rest and in its holes, moved with the layer."""
     return [
         Line(

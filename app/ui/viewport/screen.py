@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, imgui
 from app.editor import Project, Session
 from app.editor.layering.layer_list import layer_at
 from app.editor.tools.tool import PointerHit, scene_outlines
-from app.motion import DisplayedFrame
+from app.motion import LayerFrame
 from app.ui.style.theme import Look, pixel_density
 from app.ui.viewport.marks import find_anchor
 from engine.arrays import Complexes
@@ -22,7 +22,7 @@ class ScreenMapping:
     """
 
     def __init__(
-        self, session: Session, project: Project, shown: DisplayedFrame, corner: ImVec2
+        self, session: Session, project: Project, shown: LayerFrame, corner: ImVec2
     ) -> None:
         self.project = project
         self.shown = shown

@@ -32,7 +32,7 @@ from app.motion import (
     InbetweenCache,
     StreamedVertices,
     VertexArray,
-    show,
+    evaluate_layer,
 )
 from app.motion.inbetween_cache import SPARE
 from app.motion.inbetween_jobs import SeriesBuild, segment_key
@@ -226,7 +226,7 @@ def test_only_exact_in_betweens_are_shown_as_current(variant):
 
     def exact():
         exact = [frame for frame in frames if store.is_exact(clip, frame)]
-        shown = [show(clip, frame, None, [store], None) for frame in frames]
+        shown = [evaluate_layer(clip, frame, None, [store], None) for frame in frames]
         assert exact == [each.frame for each in shown if each.is_current]
         assert exact == [frame for frame in frames if store.positions(clip, frame) is not None]
         return exact

@@ -14,7 +14,7 @@ from app.document.commands.keys import (
     key_commands,
 )
 from app.document.commands.layers import layer_commands
-from app.motion import CorrectedFrames, DeformMesh, InbetweenCache, show
+from app.motion import CorrectedFrames, DeformMesh, InbetweenCache, evaluate_layer
 from engine.domain import MeshedDomain
 from engine.domain.meshing.triangulation import triangulate
 
@@ -28,12 +28,12 @@ def test_the_nearer_key_stands_in_until_the_in_between_is_prepared():
     clip = clip_of(key_commands.insert_key(layer.id, 24, turned)(document), layer.id)
     store = InbetweenCache(mesh=DeformMesh.coarse(layer.domain))
     for frame, pose in ((6, first), (18, turned)):
-        shown = show(clip, frame, None, [store], None)
+        shown = evaluate_layer(clip, frame, None, [store], None)
         assert shown.placeholder is pose
         assert not shown.is_current
         assert shown.pose is None
         np.testing.assert_array_equal(shown.positions, store.mesh.pose_vertices(pose))
-        assert show(clip, frame, None, [store], shown) is shown
+        assert evaluate_layer(clip, frame, None, [store], shown) is shown
 
 
 def test_the_frame_before_a_change_stays_until_the_new_one_is_known():
@@ -49,17 +49,17 @@ def test_the_frame_before_a_change_stays_until_the_new_one_is_known():
     )
     store = InbetweenCache(mesh=DeformMesh.coarse(layer.domain))
     store.add(store.segments_job(was, [0])())
-    earlier = show(was, 12, None, [store], None)
-    kept = show(clip, 12, None, [store], earlier)
+    earlier = evaluate_layer(was, 12, None, [store], None)
+    kept = evaluate_layer(clip, 12, None, [store], earlier)
     assert kept.vertices is earlier.vertices
     assert kept.clip is clip
     assert not kept.is_current
-    assert show(clip, 12, None, [store], kept) is kept
+    assert evaluate_layer(clip, 12, None, [store], kept) is kept
     # At another frame it would be wrong, and so it is where the new one cannot be made.
-    assert show(clip, 13, None, [store], kept).placeholder is bent
+    assert evaluate_layer(clip, 13, None, [store], kept).placeholder is bent
     store.set_needed_clips([clip], [], 12)
     store.mark_failed("in-betweens", clip)
-    assert show(clip, 12, None, [store], kept).placeholder in (first, bent)
+    assert evaluate_layer(clip, 12, None, [store], kept).placeholder in (first, bent)
 
 
 def test_key_with_a_track_waits_for_what_its_correction_needs():
@@ -71,12 +71,12 @@ def test_key_with_a_track_waits_for_what_its_correction_needs():
     clip = clip_of(document, 0)
     store, corrected = InbetweenCache(mesh=DeformMesh.coarse(layer.domain)), CorrectedFrames(clip)
     corrected.take(corrected.missing_here(document, 0, {})())
-    shown = show(clip, 0, None, [store], None, corrected)
+    shown = evaluate_layer(clip, 0, None, [store], None, corrected)
     pose = layer.keys[0].pose
     assert shown.placeholder is pose
     assert not shown.is_current
     store.add(store.segments_job(clip, [])())
-    shown = show(clip, 0, None, [store], shown, corrected)
+    shown = evaluate_layer(clip, 0, None, [store], shown, corrected)
     assert shown.is_current
     (moved,) = shown.handle_positions - layer.handles[0].position
     np.testing.assert_allclose(moved, 5, atol=0.05)
@@ -98,14 +98,14 @@ def test_one_exact_in_between_stands_in_for_others_nearby():
     exact = InbetweenCache(mesh=store.mesh)
     exact.add(exact.segments_job(clip, [0])())
     for frame, stand_in in ((12, None), (13, seen), (8, seen), (4, first), (22, bent)):
-        shown = show(clip, frame, None, [store], None)
+        shown = evaluate_layer(clip, frame, None, [store], None)
         assert shown.placeholder is stand_in
         if shown.is_current:
             expected = exact.positions(clip, frame)
             np.testing.assert_allclose(shown.positions, expected, atol=1e-5)
     # Of other keys it shows nothing.
     other = clip_of(key_commands.insert_key(layer.id, 24, turned_back(bent))(document), layer.id)
-    assert show(other, 12, None, [store], None).placeholder is first
+    assert evaluate_layer(other, 12, None, [store], None).placeholder is first
 
 
 def turned_back(pose):
@@ -124,12 +124,12 @@ def test_twenty_layers_with_something_in_front_are_drawn_again_as_they_are():
         own = replace(layer, domain=replace(layer.domain, mesh=mesh))
         clip = replace(clip, layer=own)
         stores.append((clip, InbetweenCache(mesh=DeformMesh.fine(own.domain))))
-    shows = [show(clip, 0, None, [store], None) for clip, store in stores]
+    shows = [evaluate_layer(clip, 0, None, [store], None) for clip, store in stores]
     for (clip, store), shown in zip(stores, shows, strict=True):
         order = shown.vertices.triangles
         assert not np.array_equal(order, store.mesh.domain.mesh.triangles)
-        assert show(clip, 0, None, [store], shown) is shown
-        assert show(clip, 5, None, [store], shown).vertices is shown.vertices
+        assert evaluate_layer(clip, 0, None, [store], shown) is shown
+        assert evaluate_layer(clip, 5, None, [store], shown).vertices is shown.vertices
 
 
 def test_a_mesh_with_something_in_front_goes_with_what_showed_it():

@@ -32,11 +32,11 @@ from app.motion import (
     InbetweenCache,
     ParentTransforms,
     bounding_box,
+    evaluate_layer,
     find_parent_motion,
     measure_extent,
     placed_animations,
     reuse_corrections,
-    show,
     trace_paths,
 )
 from app.motion.corrected_frames import CorrectedFrames
@@ -585,7 +585,7 @@ def test_nothing_of_an_earlier_outline_serves_another_one():
     rebuilt = clip_of(with_layer(first, domain=domain), 0)
     assert CorrectedFrames(rebuilt, frames).at(rebuilt, 3) is None
     pose, mesh = rebuilt.keys[0].pose, DeformMesh.coarse(domain)
-    shown = show(rebuilt, 3, pose, [InbetweenCache(mesh=mesh)], None, frames)
+    shown = evaluate_layer(rebuilt, 3, pose, [InbetweenCache(mesh=mesh)], None, frames)
     assert shown.correction is None
 
 

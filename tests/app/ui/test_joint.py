@@ -37,7 +37,7 @@ from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import PARENT_IS_DESCENDANT, detach_layer
 from app.editor.layering.pictures import add_layers
 from app.motion import ParentTransforms
-from app.motion.displayed_frame import place_displayed_frames
+from app.motion.layer_frame import place_displayed_frames
 from app.motion.parenting.parent_transforms import layer_animation
 from app.storage import Autosave, SourceInfo, make_still_layer
 from app.ui.style.theme import PALETTES

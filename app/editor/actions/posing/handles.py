@@ -18,7 +18,7 @@ from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
 from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.motion import DisplayedFrame
+from app.motion import LayerFrame
 from app.texts import _, ngettext
 from engine.domain import MeshedDomain
 from engine.geometry import contains, diameter
@@ -182,7 +182,7 @@ def set_anchor(
         )
 
 
-def _at_rest(shown: DisplayedFrame, place: complex) -> complex:
+def _at_rest(shown: LayerFrame, place: complex) -> complex:
     """Return the rest place of the point shown at a place."""
     found = shown.mesh.locate(np.array([place]), shown.positions)
     return complex(found.positions_on(shown.mesh.domain.mesh.vertices)[0])

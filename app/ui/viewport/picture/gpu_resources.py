@@ -6,7 +6,7 @@ import numpy as np
 
 from app.document import Layer, stiffness_source
 from app.editor import HeatMap, Project
-from app.motion import DeformMesh, DisplayedFrame, Vertices
+from app.motion import DeformMesh, LayerFrame, Vertices
 from app.render import DrawnMesh, Renderer, shader_is_faster
 from app.render.gpu.mesh import GpuMesh, PosedMesh
 from app.render.gpu.picture import GpuPicture
@@ -19,7 +19,7 @@ from engine.domain import find_closed_cuts
 from engine.maps import distortion
 
 
-def measure_distortion(shown: DisplayedFrame, heat_map: HeatMap) -> Floats:
+def measure_distortion(shown: LayerFrame, heat_map: HeatMap) -> Floats:
     """Return a distortion measure at the vertices of the shown frame, (v,)."""
     fz, fzbar = shown.derivatives
     match heat_map:
@@ -83,7 +83,7 @@ class GpuResources:
             known = self._ghosts[layer, number] = of, vertices
         return known[1]
 
-    def heat(self, pose: PosedMesh, shown: DisplayedFrame, heat_map: HeatMap) -> None:
+    def heat(self, pose: PosedMesh, shown: LayerFrame, heat_map: HeatMap) -> None:
         """Colour a pose by the distortion of the shown frame. Uploads only if it has changed."""
         wanted = (shown.vertices, heat_map)
         if self._heated.get(pose) != wanted:

@@ -30,7 +30,7 @@ from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class DisplayedFrame:
+class LayerFrame:
     """A frame of a layer as drawn, and the data that it was made from."""
 
     clip: Clip
@@ -85,14 +85,14 @@ class DisplayedFrame:
         return [float(turn) for turn in turns]
 
 
-def show(
+def evaluate_layer(
     clip: Clip,
     frame: int,
     pose: Pose | None,
     stores: Sequence[InbetweenCache],
-    earlier: DisplayedFrame | None,
+    earlier: LayerFrame | None,
     corrected: CorrectedFrames | None = None,
-) -> DisplayedFrame:
+) -> LayerFrame:
     """Return the best available frame; the earlier object itself without a change.
 
     Until an in-between is computed, the same frame before the last change replaces it, or else the
@@ -141,7 +141,7 @@ def show(
     vertices = store.vertices(clip, frame, instead, None if near else correction)
     if vertices is None:
         raise ValueError("what is exact has vertices")
-    return DisplayedFrame(
+    return LayerFrame(
         clip=clip,
         frame=frame,
         pose=pose,
@@ -154,15 +154,13 @@ def show(
     )
 
 
-def _is_earlier_state(
-    earlier: DisplayedFrame, frame: int, store: InbetweenCache, clip: Clip
-) -> bool:
+def _is_earlier_state(earlier: LayerFrame, frame: int, store: InbetweenCache, clip: Clip) -> bool:
     """Return whether the last displayed frame is this frame before a change of the clip."""
     is_exact = earlier.placeholder is None or isinstance(earlier.placeholder, Clip)
     return is_exact and earlier.frame == frame and not store.has_failed(clip)
 
 
-def _kept(earlier: DisplayedFrame, clip: Clip) -> DisplayedFrame:
+def _kept(earlier: LayerFrame, clip: Clip) -> LayerFrame:
     """Return the frame of an earlier clip as a placeholder, with the present handles."""
     if earlier.clip is clip:
         return earlier
@@ -172,11 +170,11 @@ def _kept(earlier: DisplayedFrame, clip: Clip) -> DisplayedFrame:
 
 def place_displayed_frames(
     document: Document,
-    shown: Mapping[int, DisplayedFrame],
+    shown: Mapping[int, LayerFrame],
     joints: ParentTransforms | None,
     poses: Mapping[int, Pose],
     earlier: ParentTransforms | None = None,
-) -> dict[int, DisplayedFrame]:
+) -> dict[int, LayerFrame]:
     """Return the displayed frames with the layers' placements in the scene.
 
     `shown` and `poses` have layer ids as keys; `poses` are displayed poses that are not in the
@@ -215,7 +213,7 @@ def _earlier_transform(
     return earlier.kept_transform(was, joint, frame)
 
 
-def _locate(clip: Clip, mesh: DeformMesh, earlier: DisplayedFrame | None) -> MeshPoints:
+def _locate(clip: Clip, mesh: DeformMesh, earlier: LayerFrame | None) -> MeshPoints:
     if (
         earlier is not None
         and earlier.mesh is mesh
