@@ -186,11 +186,11 @@ class Inbetweens:
 
     def offsets(self, time: float) -> Complexes:
         """Return f − f(anchor) at the points, (m,)."""
-        return self._offsets(self._blended(time), time)
+        return self._offsets(self.derivatives(time), time)
 
     def frame(self, time: float) -> Frame:
         """Return the in-between at a time in [0, 1]."""
-        return self._frame(self._blended(time), time)
+        return self._frame(self.derivatives(time), time)
 
     def _frame(self, blended: Derivatives, time: float) -> Frame:
         places = self.sampled_domain.paths.places
@@ -223,7 +223,8 @@ class Inbetweens:
             blended, mixing = each.changed(blended, mixing, self.sign, time)
         return blended, mixing
 
-    def _blended(self, time: float) -> Derivatives:
+    def derivatives(self, time: float) -> Derivatives:
+        """Return the derivatives at the nodes."""
         return self._mixed(time)[0] if self.corrections else self._uncorrected(time)
 
     def _uncorrected(self, time: float) -> Derivatives:
@@ -249,16 +250,23 @@ class Inbetweens:
 
     def _offsets(self, blended: Derivatives, time: float) -> Complexes:
         """Return Φ + conj(Ψ), both 0 at the anchor; one sum along the paths gives both."""
-        keyframes, weights = self.keyframe_blend.keyframes, self.keyframe_blend.time_weights(time)
         paths = self.sampled_domain.paths
         steps = paths.step_integrals(blended.fz, blended.fzz)
         conj_psi = paths.step_integrals(blended.g, blended.gz)
         steps += np.conj(conj_psi, out=conj_psi)
-        # The quadrature errors of the keyframes are known and are blended with the same weights.
-        # The in-between therefore equals the keyframes at both ends, without a jump in time.
+        offsets = self.quadrature_errors(time)
+        offsets += paths.integrals(steps)
+        return offsets
+
+    def quadrature_errors(self, time: float) -> Complexes:
+        """Return the known errors of the quadrature at the keyframes, blended, (m,).
+
+        They have the weights of the keyframes. The in-between therefore equals the keyframes at
+        both ends, without a jump in time.
+        """
+        keyframes, weights = self.keyframe_blend.keyframes, self.keyframe_blend.time_weights(time)
         errors = weighted_sum([key.psi_error for key in keyframes], weights)
         np.conj(errors, out=errors)
         errors *= self.rho(time)
         errors += weighted_sum([key.phi_error for key in keyframes], weights)
-        errors += paths.integrals(steps)
         return errors

@@ -1,9 +1,12 @@
-"""Poses of a slider, blended by weights of any sign within the limits of the distortion.
+"""Poses of sliders, added to in-betweens by weights of any sign within the limits of distortion.
 
-In: poses of a sampled domain, the Hilbert transform of its outline, limits; weights that sum to 1.
-Out: frames within the limits; motions whose weights depend on time, for series.
+In: poses of a domain, the Hilbert transform of its outline, limits; an in-between, and weights.
+Out: frames within the limits.
 Imports: `engine.interpolation`, `engine.deform.correction`, `engine.dirichlet`, `engine.maps`.
 """
 
-from engine.sliders.motion import SliderMotion as SliderMotion
-from engine.sliders.pose_blend import PoseBlend as PoseBlend, PoseFrame as PoseFrame
+from engine.sliders.frame_solver import (
+    FrameSolution as FrameSolution,
+    FrameSolver as FrameSolver,
+)
+from engine.sliders.slider_poses import SliderFrame as SliderFrame, SliderPoses as SliderPoses

@@ -11,7 +11,7 @@ This interval is not empty while |η| is at most
     η_max = min((σ_a_max² − σ_b_min²) / 4, k_max σ_a_max² / (1 + k_max)²).
 
 So the curb scales η by ρ ≤ 1 and adds r to ln |f_z|. Both are continuous in the weights, and change
-nothing where the poses' blend is within the limits. Not in the paper.
+nothing where the blend is within the limits. Not in the paper.
 """
 
 from collections.abc import Sequence
@@ -22,6 +22,8 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.dirichlet import HilbertTransform
+from engine.dirichlet.panels import Panels
+from engine.interpolation.inbetweens import PointValues
 from engine.interpolation.series.residual import combine_arrays
 from engine.maps import Bounds, HarmonicMap, derivatives_of
 
@@ -31,33 +33,44 @@ BACK = 0.03
 
 
 class Curb(NamedTuple):
-    """The curb of one frame.
-
-    Attributes
-    ----------
-    residual : float64, shape (N,)
-        r at the nodes of the boundary.
-    rho : float
-        Factor of η.
-    excess : float
-        How far ln |f_z| is outside its interval at any checked place.
-    """
+    """r at the nodes of the boundary, (N,), and how far ln |f_z| then is outside its interval."""
 
     residual: Floats
-    rho: float
     excess: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class OutlinePoses:
-    """Poses on the boundary, at the checked places (p, c) of the transform's panels.
+class OutlineBlend:
+    """A blend on the boundary, with ln |f_z| and its interval at the checked places (p, c).
 
-    Attributes
-    ----------
-    loops : intp, shape (p,)
-        The loop of each panel, 0 for the outline.
-    log_modulus, conj_eta : float64 and complex128, shape (q, p c)
-        ln |f_z| and conj(η) of each pose.
+    `loops` (p,) are the loops of the panels, 0 for the outline. `rho` is the factor of η.
+    """
+
+    panels: Panels
+    loops: Indices
+    log_modulus: Floats
+    low: Floats
+    high: Floats
+    rho: float
+
+    def curb(self, at_nodes: Floats | None, constants: Floats) -> Curb:
+        """Find r, given an addition to ln |f_z| at the nodes (N,), if any.
+
+        `constants` (1 + holes,) are added on each loop before r moves ln |f_z| into its interval.
+        """
+        panels, logarithm = self.panels, self.log_modulus
+        if at_nodes is not None:
+            logarithm = logarithm + panels.interpolate(at_nodes.reshape(len(panels), -1))
+        fitted, excess = panels.fit_within(logarithm, self.low, self.high, constants[self.loops])
+        return Curb(fitted.ravel(), excess)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class OutlinePoses:
+    """Poses on the boundary, at the checked places (p c,) of the transform's panels.
+
+    `loops` (p,) are as in `OutlineBlend`; `log_modulus` and `conj_eta` (q, p c) are ln |f_z| and
+    conj(η) of each pose.
     """
 
     transform: HilbertTransform
@@ -79,26 +92,21 @@ class OutlinePoses:
             conj_eta=freeze(np.ascontiguousarray(fz * fzbar.conj())),
         )
 
-    def curb(self, weights: Floats, at_nodes: Floats | None, constants: Floats) -> Curb:
-        """Return the curb of a frame.
-
-        Parameters
-        ----------
-        weights : float64, shape (q,)
-        at_nodes : float64, shape (N,), optional
-            An addition to ln |f_z| at the nodes.
-        constants : float64, shape (1 + holes,)
-            Added to ln |f_z| on each loop before r moves it into its interval.
-        """
-        panels = self.transform.panels
-        logarithm = (weights @ self.log_modulus).reshape(len(panels), -1)
-        if at_nodes is not None:
-            logarithm += panels.interpolate(at_nodes.reshape(len(panels), -1))
-        eta = np.abs(combine_arrays(weights, self.conj_eta)).reshape(logarithm.shape)
+    def blend(self, base: PointValues, weights: Floats) -> OutlineBlend:
+        """Add poses by weights (q,) to a base at the nodes of the transform (N,)."""
+        panels, used = self.transform.panels, np.flatnonzero(weights)
+        shape = len(panels), -1
+        logarithm = panels.interpolate(np.log(np.abs(base.fz)).reshape(shape))
+        logarithm += (weights[used] @ self.log_modulus[used]).reshape(shape)
+        own = (base.fz * base.g).reshape(shape)
+        conj_eta = panels.interpolate(own.real) + 1j * panels.interpolate(own.imag)
+        conj_eta += combine_arrays(weights[used], self.conj_eta[used]).reshape(shape)
+        eta = np.abs(conj_eta)
         rho = eta_scale(float(eta.max()), self.bounds)
         low, high = log_modulus_limits(rho * eta, self.bounds)
-        residual, excess = panels.fit_within(logarithm, low, high, constants[self.loops])
-        return Curb(residual.ravel(), rho, excess)
+        return OutlineBlend(
+            panels=panels, loops=self.loops, log_modulus=logarithm, low=low, high=high, rho=rho
+        )
 
 
 def largest_eta(bounds: Bounds) -> float:

@@ -4,22 +4,29 @@ Constraints and curb alternate: h is found for the curbed frame, and the curb fo
 until neither changes the other. Steps are accelerated by the steps before (Anderson 1965).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats
-from engine.dirichlet import Densities, Refinement
+from engine.arrays import Complexes, Floats, Indices, nbytes_of
+from engine.dirichlet import Densities, HilbertTransform, Refinement
+from engine.errors import EngineError
+from engine.interpolation import SampledDomain
+from engine.interpolation.inbetweens import PointValues
+from engine.maps import Bounds, HarmonicMap
 from engine.sliders.constraints import Constraints
-from engine.sliders.curb import Curb, OutlinePoses
+from engine.sliders.curb import Curb, OutlineBlend, OutlinePoses
 
 # The alternation ends when a round changes ln f_z by at most CLOSE on the boundary. After
-# MOST_ROUNDS, or before a step above FAR, a change below ACCEPTED will do. Else the weights go back
-# towards the first pose.
+# MOST_ROUNDS, or before a step above FAR, a change below ACCEPTED will do. Else all weights are
+# lowered.
 CLOSE, ACCEPTED, FAR, MOST_ROUNDS = 5e-5, 5e-4, 2.0, 20
 REMEMBERED, DISTINCT = 6, 1e-6  # rounds; smaller relative differences of rounds are ignored
 BACK, MOST_RETURNS = 0.85, 12
+WEIGHTS = "A slider with {count} poses needs {count} finite weights, not {weights}."
+OTHER_DOMAIN = "Pose {number} has another cage than the sampled domain; pose the same domain."
 
 
 class FrameSolution(NamedTuple):
@@ -28,14 +35,22 @@ class FrameSolution(NamedTuple):
     Attributes
     ----------
     weights : float64, shape (q,)
-    h : complex128, shape (j,), or None
-        Coefficients of the constraints' functions.
+        Of the poses: the given ones times `share`.
+    h : complex128, shape (n,), or None
+        Coefficients in the span.
     shift : complex
         Translation.
     densities : Densities or None
         Of H[r]; None for r = 0.
-    rho, curbed, beyond, share
-        As in `PoseFrame`.
+    rho : float
+        Factor of η.
+    curbed : float
+        Largest |r|, the change of ln |f_z| on the boundary by the curb; 0 where the blend is within
+        the limits by itself and ρ is 1.
+    beyond : float
+        How far ln |f_z| on the boundary may be outside the interval that the limits allow.
+    share : float
+        Below 1 where the limits, the pins and the periods cannot be had together.
     """
 
     weights: Floats
@@ -58,53 +73,122 @@ class FrameSolver:
     outline: OutlinePoses
     constraints: Constraints | None
 
-    def solve(self, weights: Floats) -> FrameSolution:
-        """Solve a frame, with weights nearer to the first pose if there is no solution."""
-        first = np.zeros_like(weights)
-        first[0] = 1.0
-        for number in range(MOST_RETURNS):
-            share = BACK**number
-            found = self._alternate(first + share * (weights - first))
-            if found.beyond <= ACCEPTED:
-                return found._replace(share=share)
-        return self._alternate(first)._replace(share=0.0)
+    @classmethod
+    def of(
+        cls,
+        poses: Sequence[HarmonicMap],
+        turns: Indices,
+        sites: SampledDomain,
+        transform: HilbertTransform,
+        bounds: Bounds,
+        pins: Complexes,
+        *,
+        is_anchored: bool = False,
+    ) -> Self:
+        """Prepare poses of a domain.
 
-    def _alternate(self, weights: Floats) -> FrameSolution:
+        Parameters
+        ----------
+        poses : sequence of HarmonicMap, length q
+            Locally injective maps. The curb changes poses beyond the bounds.
+        turns : int, shape (q,)
+            Full turns of each pose beyond the shorter way.
+        sites : SampledDomain
+            Gives the boundary and the anchor.
+        pins : complex, shape (m,)
+            Points of the domain at rest that keep their places.
+        is_anchored : bool
+            Whether the anchor moves with the poses alone, and not to suit the pins.
+
+        Raises
+        ------
+        EngineError
+            If an argument breaks one of these conditions, or a pose folds.
+        """
+        for number, pose in enumerate(poses):
+            if not pose.span.equals(sites.boundary.span):
+                raise EngineError(OTHER_DOMAIN, number=number)
+        sites.require_boundary(transform.loops)
+        return cls(
+            outline=OutlinePoses.of(poses, transform, bounds),
+            constraints=Constraints.of(
+                poses, turns, sites, transform, pins, is_anchored=is_anchored
+            ),
+        )
+
+    @property
+    def nodes(self) -> Complexes:
+        """Points at which the base is given, those of the constraints first."""
+        known, nodes = self.constraints, self.outline.transform.nodes
+        return nodes if known is None else np.append(known.corrector.paths.nodes, nodes)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory in bytes, without the transform."""
+        return nbytes_of(self, but=(self.outline.transform,))
+
+    def solve(self, weights: Floats, base: PointValues) -> FrameSolution:
+        """Solve a frame on a base at `nodes`, with lower weights if there is no solution.
+
+        Raises
+        ------
+        EngineError
+            If the weights are not one finite number for each pose.
+        """
+        count = len(self.outline.log_modulus)
+        if weights.shape != (count,) or not np.isfinite(weights).all():
+            raise EngineError(WEIGHTS, count=count, weights=weights)
+        own = len(base.fz) - len(self.outline.transform.nodes)
+        at_constraints, at_transform = (
+            PointValues(*(each[part] for each in base)) for part in (slice(own), slice(own, None))
+        )
+        for number in range(MOST_RETURNS + 1):
+            share = BACK**number if number < MOST_RETURNS else 0.0
+            blend = self.outline.blend(at_transform, share * weights)
+            found = self._alternate(share * weights, blend, at_constraints)
+            if found.beyond <= ACCEPTED:
+                break
+        return found._replace(share=share)
+
+    def _alternate(self, weights: Floats, blend: OutlineBlend, base: PointValues) -> FrameSolution:
         """Alternate between curb and constraints until neither changes the other."""
         constraints, holes = self.constraints, len(self.outline.transform.loops) - 1
         if constraints is None:
-            curb = self.outline.curb(weights, None, np.zeros(1))
-            return _packed(weights, curb, self._densities(curb), curb.excess)
+            curb = blend.curb(None, np.zeros(1))
+            return _packed(weights, blend, curb, self._densities(curb), curb.excess)
 
-        def largest(change: Floats) -> float:
-            on_boundary = constraints.real_parts(change[holes:])
-            return float(np.abs(np.append(change[:holes], on_boundary)).max())
+        def real_parts(x: Floats) -> Floats:
+            return (constraints.real_parts @ x.astype(np.float32)).astype(np.float64)
 
         # The state is what the curb is for: a constant on each hole, and the unknowns of h. On a
         # hole ln |f_z| stays below u + r by a constant (`engine.dirichlet`), which must vanish.
-        found = constraints.solve(weights, 1.0, None, None)
+        found = constraints.solve(base, weights, 1.0, None, None)
         state, step = np.append(np.zeros(holes), found.x), np.zeros(holes + len(found.x))
         states: list[Floats] = []
         misses: list[Floats] = []
         solutions: list[FrameSolution] = []
-        while len(solutions) < MOST_ROUNDS and largest(step) <= FAR:
+        change = 0.0
+        while len(solutions) < MOST_ROUNDS and change <= FAR:
             state = state + step
             constants, x = np.append(0.0, state[:holes]), state[holes:]
-            curb = self.outline.curb(weights, constraints.real_parts(x), constants)
+            curb = blend.curb(real_parts(x), constants)
             densities, lacking = self._densities(curb), np.zeros(holes)
             if densities is not None:
                 lacking = densities.lacking[:, 0]
-            if densities is not None or curb.rho < 1.0:
-                found = constraints.solve(weights, curb.rho, densities, replace(found, x=x))
+            if densities is not None or blend.rho < 1.0:
+                start = replace(found, x=x)
+                found = constraints.solve(base, weights, blend.rho, densities, start)
             miss = np.append(-lacking, found.x - x)
-            change = largest(miss)
-            beyond = change + curb.excess if found.is_finished else np.inf
-            h = constraints.from_unknowns @ found.x
-            solutions.append(_packed(weights, curb, densities, beyond, h, found.shift))
-            if change <= CLOSE:
+            off = float(np.abs(np.append(lacking, real_parts(found.x - x))).max())
+            beyond = off + curb.excess if found.is_finished else np.inf
+            h = constraints.corrector.variables.h @ found.x
+            solution = _packed(weights, blend, curb, densities, beyond)
+            solutions.append(solution._replace(h=h, shift=found.shift))
+            if off <= CLOSE:
                 break
             states, misses = [*states, state][-REMEMBERED:], [*misses, miss][-REMEMBERED:]
             step = _accelerated(np.array(states), np.array(misses))
+            change = float(np.abs(np.append(step[:holes], real_parts(step[holes:]))).max())
         return min(solutions, key=lambda solution: solution.beyond)
 
     def _densities(self, curb: Curb) -> Densities | None:
@@ -115,15 +199,11 @@ class FrameSolver:
 
 
 def _packed(
-    weights: Floats,
-    curb: Curb,
-    densities: Densities | None,
-    beyond: float,
-    h: Complexes | None = None,
-    shift: complex = 0j,
+    weights: Floats, blend: OutlineBlend, curb: Curb, densities: Densities | None, beyond: float
 ) -> FrameSolution:
+    """Return a solution without constraints."""
     curbed = float(np.abs(curb.residual).max())
-    return FrameSolution(weights, h, shift, densities, curb.rho, curbed, beyond, share=1.0)
+    return FrameSolution(weights, None, 0j, densities, blend.rho, curbed, beyond, share=1.0)
 
 
 def _accelerated(states: Floats, misses: Floats) -> Floats:

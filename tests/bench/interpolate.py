@@ -15,6 +15,7 @@ from engine.domain import MeshedDomain
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.meshing.triangulation import triangulate
 from engine.interpolation import (
+    Frame,
     Inbetweens,
     KeyframeBlend,
     KeyframeSamples,
@@ -25,9 +26,10 @@ from engine.interpolation import (
     sample_domain,
     sample_keyframes,
 )
+from engine.interpolation.inbetweens import PointValues
 from engine.maps import Boundary, Bounds, HarmonicMap, Span
 from engine.paths import root_sheets
-from engine.sliders import PoseBlend
+from engine.sliders import FrameSolver, SliderPoses
 from engine.streaming import Positions, Series, build_series, finish
 from tests.bench.table import Row, Table, measure
 
@@ -124,12 +126,29 @@ def _frames(pair: KeyframePair) -> Table:
         rows.append(Row(name=f"{variant}, positions", seconds=seconds))
         seconds = measure(partial(inbetweens.frame, MIDDLE), repeats=20)
         rows.append(Row(name=f"{variant}, with f_z and f_z̄", seconds=seconds))
-    for name, weights in (("within the limits", (0.6, 0.4)), ("curbed", (-0.3, 1.3))):
-        poses = PoseBlend.of(pair.maps, pair.sites, pair.extension, bounds=SLIDER_BOUNDS)
-        seconds = measure(partial(poses.frame, weights), repeats=20)
-        curbed = f"ln |f_z| curbed by {poses.frame(weights).curbed:.2f}"
-        rows.append(Row(name=f"slider, {name}", seconds=seconds, note=curbed))
+    rows += _slider_frames(pair)
     return Table(title=f"A frame at {len(first):,} vertices, directly", rows=tuple(rows))
+
+
+def _slider_frames(pair: KeyframePair) -> Iterator[Row]:
+    """Measure the second keyframe as the pose of a slider on the first."""
+    turns, transform = np.zeros(1, dtype=np.intp), pair.transform
+    given = (pair.maps[1:], turns, pair.sites, transform, SLIDER_BOUNDS)
+    solver = FrameSolver.of(*given, np.empty(0, dtype=np.complex128))
+    poses = SliderPoses.of(pair.keyframes[1:], turns, pair.sites)
+    base, ones = pair.inbetweens(Variant.ETA), np.ones(len(solver.nodes), dtype=np.complex128)
+
+    def frame(weight: float) -> Frame:
+        solution = solver.solve(np.array([weight]), PointValues(ones, 0 * ones, ones))
+        return poses.add_to(base, 0.0, solution, pair.extension).frame()
+
+    for name, weight in (("within the limits", 0.4), ("curbed", 1.3)):
+        curbed = solver.solve(np.array([weight]), PointValues(ones, 0 * ones, ones)).curbed
+        yield Row(
+            name=f"slider, {name}",
+            seconds=measure(partial(frame, weight), repeats=20),
+            note=f"ln |f_z| curbed by {curbed:.2f}",
+        )
 
 
 def _preparation(domain: MeshedDomain, pair: KeyframePair) -> Table:

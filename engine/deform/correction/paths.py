@@ -47,6 +47,9 @@ class PointPaths:
         """Lay paths of few pieces inside a domain."""
         outline, *holes = boundary.loops
         singular = np.concatenate([boundary.span.vertices, *boundary.loops])
+        around = Loops.around(outline, holes, singular)
+        if not len(points):
+            return cls.around(around)
         near = cKDTree(as_xy(singular))
         ways = _ways(boundary, anchor, points, near)
         legs = list(dict.fromkeys(leg for way in ways for leg in way))
@@ -62,7 +65,6 @@ class PointPaths:
         passes = np.zeros((len(points), len(legs)))
         for row, way in zip(passes, ways, strict=True):
             row[[number[leg] for leg in way]] = 1.0
-        around = Loops.around(outline, holes, singular)
         own = GAUSS * np.searchsorted(pieces.segment, np.arange(len(legs)))
         return cls(
             nodes=freeze(np.concatenate([nodes, around.nodes])),
