@@ -9,11 +9,12 @@ WHOLE: Final = ("app", "engine", "glcontext", "zlib_ng")
 # Imported within functions only, or by libraries out of sight.
 HIDDEN: Final = (
     *("av", "psd_tools", "matplotlib.figure", "matplotlib.backends.backend_agg"),
-    "imgui_bundle.glfw_utils",
+    *("imgui_bundle.glfw_utils", "_miniaudio", "_cffi_backend"),
 )
 # Whose names, versions and licences the program or its user may ask for.
 DISTRIBUTIONS: Final = (
     *("lissom", "numpy", "scipy", "pillow", "shapely", "contourpy", "zlib-ng", "threadpoolctl"),
+    "miniaudio",
     *("moderngl", "glcontext", "glfw", "imgui-bundle", "av", "psd-tools", "matplotlib"),
     *("attrs", "cycler", "fonttools", "kiwisolver", "packaging", "pyparsing", "python-dateutil"),
 )

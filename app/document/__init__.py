@@ -41,6 +41,14 @@ from app.document.channels.kinds import (
     TRACK as TRACK,
     TRANSFORM as TRANSFORM,
     VISIBILITY as VISIBILITY,
+    VOLUME as VOLUME,
+)
+from app.document.channels.sounds import (
+    SHORTEST as SHORTEST,
+    Cue as Cue,
+    Mouths as Mouths,
+    Sound as Sound,
+    SoundFile as SoundFile,
 )
 from app.document.channels.springs import SPRING_PRESETS as SPRING_PRESETS, Spring as Spring
 from app.document.channels.tangent_mode import TangentMode as TangentMode
@@ -56,6 +64,7 @@ from app.document.commands import (
     pose_commands as pose_commands,
     scene_commands as scene_commands,
     shape_commands as shape_commands,
+    sound_commands as sound_commands,
     stiffness_commands as stiffness_commands,
 )
 from app.document.commands.command import (
@@ -171,6 +180,7 @@ from app.document.queries.channel_values.values_at import (
     opacity_at as opacity_at,
     transform_at as transform_at,
     value_at as value_at,
+    volume_at as volume_at,
 )
 from app.document.queries.clips import (
     Clip as Clip,

@@ -242,6 +242,8 @@ def _bytes_only_in(old: UndoStep, new: UndoStep) -> int:
     size = SNAPSHOT_BYTES + sum(
         _layer_bytes_only_in(layer, layers.get(layer.id)) for layer in old.document.layers
     )
+    kept = {sound.file.sha256 for sound in new.document.sounds}
+    size += sum(each.file.size for each in old.document.sounds if each.file.sha256 not in kept)
     if old.preview_pose is not None and old.preview_pose is not new.preview_pose:
         size += POSE_BYTES + old.preview_pose.pose.nbytes
     return size

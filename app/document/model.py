@@ -16,6 +16,7 @@ from typing import NoReturn
 from app.document.channels.cycles import count_repeated_changes
 from app.document.channels.key import Key
 from app.document.channels.kinds import CAMERA, LAYER_KINDS, VISIBILITY
+from app.document.channels.sounds import Sound
 from app.document.channels.values import Camera
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.layer import Layer
@@ -65,6 +66,7 @@ class Document:
     groups: tuple[Group, ...] = ()
     # Keys of the visible part of the scene. Without keys, the canvas is visible.
     camera: tuple[Key[Camera], ...] = ()
+    sounds: tuple[Sound, ...] = ()
     # Notices of all imports of layered drawings.
     import_log: ImportLog = EMPTY_IMPORT_LOG
     # Layers by id, switch groups by the ids of their layers, groups by path.
@@ -105,6 +107,10 @@ class Document:
         for key in self.camera:
             self._require_inside(key.frame)
         require_fps(self.fps, _("The speed"))
+        require_distinct(
+            (sound.name for sound in self.sounds),
+            N_("Two sounds have the name {value!r}; rename one of them."),
+        )
 
     @property
     def played_frames(self) -> FrameRange:
@@ -157,6 +163,12 @@ class Document:
     def switch_group_of(self, identity: int) -> SwitchGroup | None:
         """Return the switch group of the layer with this id, if any."""
         return self._switch_groups.get(identity)
+
+    def sound(self, name: str) -> Sound:
+        for sound in self.sounds:
+            if sound.name == name:
+                return sound
+        raise LissomError(_("There is no sound {name!r}.").format(name=name))
 
     @property
     def keyed_range(self) -> tuple[int, int]:

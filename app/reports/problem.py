@@ -18,7 +18,7 @@ from typing import Final
 from app.errors import printable
 
 LIBRARIES: Final = (
-    *("numpy", "scipy", "pillow", "shapely", "contourpy", "zlib-ng"),
+    *("numpy", "scipy", "pillow", "miniaudio", "shapely", "contourpy", "zlib-ng"),
     *("moderngl", "glcontext", "glfw", "imgui-bundle"),
 )
 LEFT_OUT: Final = "…"

@@ -4,17 +4,20 @@ The window holds a lock on a second file beside it. The system releases a lock h
 ends. A process number proves nothing, because the system soon reuses the number.
 """
 
+import hashlib
 import json
 import os
 import secrets
 import threading
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
-from app.document import Document
+from app.document import Document, Sound, SoundFile
 from app.errors import LissomError, display_name
 from app.storage.files.atomic import write_atomically
 from app.storage.files.locks import is_locked, lock
@@ -61,10 +64,20 @@ class Autosave:
         members = MappingProxyType({**document.unknown_members, SOURCE_INFO: content})
         with self._writing:
             self._prepare()
-            save_project(self._path, replace(document, unknown_members=members), is_private=True)
+            self._write_sounds(document)
+            # Without the bytes of sounds, which lie beside it, written once.
+            sounds = _with_sound_data(document.sounds, lambda _: None)
+            kept = replace(document, unknown_members=members, sounds=sounds)
+            save_project(self._path, kept, is_private=True)
+
+    def _write_sounds(self, document: Document) -> None:
+        for file in {sound.file for sound in document.sounds}:
+            path, data = _sound_of(self._path, file), file.data
+            if data is not None and not path.exists():
+                write_atomically(path, partial(_write_bytes, data=data), is_private=True)
 
     def remove(self) -> None:
-        self._path.unlink(missing_ok=True)
+        _remove(self._path)
         if self._lock is not None:
             os.close(self._lock)
             self._lock = None
@@ -97,7 +110,9 @@ def load_recoverable_file(path: Path) -> tuple[Document, SourceInfo]:
     document = load_project(path)
     attachments = dict(document.unknown_members)
     origin = _parse_source_info(attachments.pop(SOURCE_INFO, b""))
-    return replace(document, unknown_members=MappingProxyType(attachments)), origin
+    members = MappingProxyType(attachments)
+    sounds = _with_sound_data(document.sounds, partial(_read_sound, path))
+    return replace(document, unknown_members=members, sounds=sounds), origin
 
 
 def read_source_info(path: Path) -> SourceInfo:
@@ -107,7 +122,7 @@ def read_source_info(path: Path) -> SourceInfo:
 
 def remove_recoverable_file(path: Path) -> None:
     """Remove the autosave of a window that no longer runs."""
-    path.unlink(missing_ok=True)
+    _remove(path)
     _lock_of(path).unlink(missing_ok=True)
 
 
@@ -170,6 +185,35 @@ def _parse_source_info(content: bytes) -> SourceInfo:
     except (ValueError, RecursionError):
         pass
     return UNKNOWN_SOURCE
+
+
+def _with_sound_data(
+    sounds: Iterable[Sound], find: Callable[[SoundFile], bytes | None]
+) -> tuple[Sound, ...]:
+    """Return sounds with the bytes that a function finds for their files."""
+    return tuple(replace(each, file=replace(each.file, data=find(each.file))) for each in sounds)
+
+
+def _read_sound(path: Path, file: SoundFile) -> bytes | None:
+    """Return the bytes of a sound beside an autosave; None if they are missing."""
+    with suppress(LissomError):
+        data = read_file(_sound_of(path, file))
+        return data if hashlib.sha256(data).hexdigest() == file.sha256 else None
+    return None
+
+
+def _write_bytes(file: IO[bytes], data: bytes) -> None:
+    file.write(data)
+
+
+def _sound_of(path: Path, file: SoundFile) -> Path:
+    return path.with_suffix(f".{file.sha256}.sound")
+
+
+def _remove(path: Path) -> None:
+    """Remove an autosave with its sounds."""
+    for each in (path, *path.parent.glob(f"{path.stem}.*.sound")):
+        each.unlink(missing_ok=True)
 
 
 def _lock_of(path: Path) -> Path:

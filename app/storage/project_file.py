@@ -3,7 +3,8 @@
 A project is a zip file: `mimetype` (first, not packed), `project.json`, `thumbnail.png`, and a
 folder for each layer under `layers/`, named by its id. This folder holds the picture, the arrays of
 the domain, and the maps of the poses. The maps are stored, so that another solver never changes an
-animation. Unknown fields and members are kept and written again.
+animation. Bytes of sounds are under `sounds/`. Unknown fields and members are kept and written
+again.
 
 A project file is untrusted input. Unpacked sizes are limited before anything is unpacked. Pictures
 and domains are checked. Certificates are not stored: the maps are certified again. For any damaged
@@ -28,6 +29,7 @@ from app.storage.json_values import JsonObject, as_object, as_text, as_whole, ch
 from app.storage.project.archive import MEBIBYTE, Archive, write_archive
 from app.storage.project.document_json import SCHEMA, read_document, write_document
 from app.storage.project.members import layer_members
+from app.storage.project.sounds import sound_members
 from app.texts import N_, _, message_of
 
 LARGEST_JSON = 32 * MEBIBYTE
@@ -69,6 +71,7 @@ def save_project(
     }
     for layer in document.layers:
         members |= layer_members(layer)
+    members |= sound_members(document)
     if thumbnail is not None:
         members[THUMBNAIL] = thumbnail
     # Members of later versions stay, but never replace this version's members.

@@ -1,6 +1,7 @@
 """Documents, random commands on them, and exact comparison, shared by the tests."""
 
 import dataclasses
+import hashlib
 import struct
 from collections.abc import Mapping
 from math import inf, tau
@@ -21,9 +22,14 @@ from app.document import (
     TRACK,
     TRANSFORM,
     VISIBILITY,
+    VOLUME,
     Camera,
     Channel,
+    Cue,
     DrawOrder,
+    Mouths,
+    Sound,
+    SoundFile,
     Transform,
     channel_commands,
     pose_channel,
@@ -32,6 +38,7 @@ from app.document.channels.easing import HOLD, LINEAR, PRESETS, Easing
 from app.document.channels.springs import Spring
 from app.document.channels.tangent_mode import TangentMode
 from app.document.channels.tracks import Track, TrackKey
+from app.document.checks import Unknown
 from app.document.commands import (
     handle_commands,
     pose_commands,
@@ -463,6 +470,37 @@ def hand_made_cut_out() -> CutOut:
     )
 
 
+def full_sound(unknown: Unknown) -> Sound:
+    """A sound with something other than the default in every field; its bytes are no sound."""
+    data = b"RIFF and more"
+    return Sound(
+        name="talk",
+        file=SoundFile(
+            name="talk.wav",
+            sha256=hashlib.sha256(data).hexdigest(),
+            size=len(data),
+            rate=44_100,
+            channels=2,
+            samples=90_000,
+            data=data,
+        ),
+        start=-3.25,
+        skip=0.1,
+        length=1 / 3,
+        volume=0.7,
+        keys=(VOLUME.key(0, 0.25, unknown=unknown), VOLUME.key(5, 1.0)),
+        muted=True,
+        mouths=Mouths(
+            switch="mouth",
+            cues=(Cue(seconds=0.0, name="X"), Cue(seconds=0.25, name="A")),
+            drawings=(("X", 0), ("A", 5)),
+            keys=(SWITCH.key(2, 5),),
+            unknown=unknown,
+        ),
+        unknown=unknown,
+    )
+
+
 def full_document() -> Document:
     """A document with something other than the default in every field."""
     empty = disc_document()
@@ -546,6 +584,7 @@ def full_document() -> Document:
         frames=FrameRange(1, 60),
         preview=FrameRange(3, 40),
         markers=(Marker(frame=0, name="go", unknown=more), Marker(frame=700, name="ü")),
+        sounds=(full_sound(more),),
         fps=23.976,
         loop=True,
         export=ExportSettings(

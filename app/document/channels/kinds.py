@@ -21,6 +21,11 @@ def require_opacity(opacity: float) -> None:
     require(0 <= opacity <= 1, N_("Opacity must be from 0 to 1, not {opacity:g}."), opacity=opacity)
 
 
+def require_volume(volume: float) -> None:
+    """Refuse a volume outside 0 to 1."""
+    require(0 <= volume <= 1, N_("A volume must be from 0 to 1, not {volume:g}."), volume=volume)
+
+
 def require_colour(colour: tuple[float, float, float]) -> None:
     """Refuse a colour that is not three levels from 0 to 1."""
     require(
@@ -135,6 +140,17 @@ DEPTH: Final = ChannelKind[float](
     of_handles=True,
     check=require_depth,
     moves_layer=True,
+)
+
+VOLUME: Final = ChannelKind[float](
+    name="volume",
+    label=N_("Volume"),
+    icon="VOLUME_HIGH",
+    fields=(ValueField("volume", Quantity.SHARE, default=1.0),),
+    components=(KeyedProperty(lambda key: key.value, SAME_OPACITY),),
+    join=lambda volume: min(max(volume, 0.0), 1.0),
+    check=require_volume,
+    tangent_mode=TangentMode.CORNER,  # linear fades
 )
 
 # Kinds whose keys a layer stores by their channels' ids.

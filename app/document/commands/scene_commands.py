@@ -107,7 +107,9 @@ def scale_time(document: Document, factor: float) -> Document:
         for channel in channels_in(document)
     }
     changes = {layer.id: _scaled_fields(layer, scale, rows) for layer in document.layers}
-    return put_rows(document, rows, changes, **_mapped_ranges(document, scaled))
+    document = put_rows(document, rows, changes, **_mapped_ranges(document, scaled))
+    sounds = tuple(replace(each, start=scale.scaled_time(each.start)) for each in document.sounds)
+    return replace(document, sounds=sounds)
 
 
 def _scaled_fields(layer: Layer, scale: TimeScale, rows: KeyRows) -> dict[str, Any]:

@@ -65,6 +65,7 @@ from app.storage.project.codecs import (
 )
 from app.storage.project.earlier_schemas import update_schema
 from app.storage.project.members import LayerMembers
+from app.storage.project.sounds import SOUND, with_sound_files
 from app.texts import N_, _, message_of
 from engine.domain import Domain
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
@@ -388,6 +389,7 @@ DOCUMENT = record(
     Field("switch_groups", list_of(SWITCH_GROUP), default=(), legacy_name="choices"),
     Field("groups", list_of(GROUP), default=()),
     Field("camera", list_of(key_codec(CAMERA)), default=()),
+    Field("sounds", list_of(SOUND), default=()),
     Field("import_log", IMPORT_LOG, default=EMPTY_IMPORT_LOG, legacy_name="told"),
 )
 
@@ -415,6 +417,7 @@ def read_document(
     fields = DOCUMENT.read(content, "")
     del fields["schema"], fields["app_version"]
     layers = fields.pop("layers")
+    fields["sounds"] = with_sound_files(fields["sounds"], archive)
     if len({layer["id"] for layer in layers}) < len(layers):
         # Refused here: later each layer's members would be read twice.
         raise LissomError(_("two of its layers have the same id"))

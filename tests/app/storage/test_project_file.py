@@ -187,7 +187,7 @@ def test_a_stored_file_of_schema_1_opens():
     own = [name for name in LAYER if hasattr(usual, name)]
     as_layer = {name: getattr(usual, name) for name in own}
     first = altered(
-        replace(full, layers=(replace(layer, attachments=()),), size=None),
+        replace(full, layers=(replace(layer, attachments=()),), size=None, sounds=()),
         markers=(),
         library=(),
         mirror=None,
@@ -264,7 +264,7 @@ def written_again(path, to):
 
 
 def test_stored_schema_2_keeps_everything_but_its_names(tmp_path):
-    full = full_document()
+    full = replace(full_document(), sounds=())
     # In a loop, the last depth held before the first pose too, and the first pose ended it.
     for layer, handle in [(each, handle) for each in full.layers for handle in each.handles]:
         held = (DEPTH.key(3, handle.depth), *layer.keys_of(DEPTH, handle.id))
@@ -790,11 +790,13 @@ def test_every_field_is_needed(tmp_path, members):
     kept |= {"background", "enclosed", "mask", "strokes", "holes", "toggled_holes", "stale"}
     kept |= {"cut_lines", "parted", *CLOCKS}
     # A channel without a known kind is kept as it is.
+    kept |= {"sounds", "mouths", "volume"}
     kept_channels = {"kind", "part", "easing"}
     missing = [
         way
         for way in ways(known)
-        if way[-1] not in kept and not ("channels" in way and way[-1] in kept_channels)
+        if way[-1] not in kept
+        and not ({"channels", "sounds"} & {*way} and way[-1] in kept_channels)
     ]
     assert len(missing) > 60
     for way in missing:
@@ -893,12 +895,15 @@ def test_members_that_make_no_sense_are_named(tmp_path, members, name, content, 
         load_project(pack(tmp_path / "a", members | {name: content}))
 
 
-def test_every_member_but_the_thumbnail_is_needed(tmp_path, members):
+def test_every_member_but_thumbnail_and_sounds_is_needed(tmp_path, members):
     for name in members:
         fewer = {other: content for other, content in members.items() if other != name}
         path = pack(tmp_path / "a", fewer)
         if name == "thumbnail.png":
             assert not differences(load_project(path), full_document())
+        elif name.startswith("sounds/"):
+            lost = differences(load_project(path), full_document())
+            assert lost == ["document.sounds.0.file.data"]
         else:
             with pytest.raises(LissomError, match=f"lacks {name}|{NO_PROJECT}"):
                 load_project(path)

@@ -39,6 +39,10 @@ class TimeScale:
         """Return the scaled frame, at least 0."""
         return max(self.stays + nearest_frame((frame - self.stays) * self.factor), 0)
 
+    def scaled_time(self, time: float) -> float:
+        """Return a scaled time in frames, whole or between two."""
+        return self.stays + (time - self.stays) * self.factor
+
     def scaled(self, keys: Iterable[Key], channel: str) -> Keys[Key]:
         """Return keys at their scaled frames, with velocities scaled accordingly.
 

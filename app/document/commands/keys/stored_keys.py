@@ -6,7 +6,7 @@ from typing import Any
 
 from app.document.channels.key import BaseKey
 from app.document.channels.kind import Channel
-from app.document.channels.kinds import CAMERA, MARKER, PARENT, POSE, SWITCH, TRACK
+from app.document.channels.kinds import CAMERA, MARKER, PARENT, POSE, SWITCH, TRACK, VOLUME
 from app.document.layer import Layer
 from app.document.model import Document
 from app.document.settings import FrameRange
@@ -69,6 +69,7 @@ def _scene_fields(document: Document, rows: KeyRows) -> Fields:
     """Return the changed fields of a document for the keys of its own channels."""
     fields: Fields = {}
     groups = {each.name: each for each in document.switch_groups}
+    sounds = {each.name: each for each in document.sounds}
     for channel, row in rows.items():
         if channel.kind is MARKER and row != document.markers:
             fields["markers"] = row
@@ -77,8 +78,13 @@ def _scene_fields(document: Document, rows: KeyRows) -> Fields:
         elif channel.kind is SWITCH:
             group = document.switch_group(str(channel.part))
             groups[group.name] = replace(group, keys=row)
+        elif channel.kind is VOLUME:
+            sound = document.sound(str(channel.part))
+            sounds[sound.name] = replace(sound, keys=row)
     if tuple(groups.values()) != document.switch_groups:
         fields["switch_groups"] = tuple(groups.values())
+    if tuple(sounds.values()) != document.sounds:
+        fields["sounds"] = tuple(sounds.values())
     return fields
 
 

@@ -14,6 +14,7 @@ from app.document.channels.kinds import (
     POSE,
     SWITCH,
     TRACK,
+    VOLUME,
 )
 from app.document.channels.tracks import Track
 from app.document.layer import Layer
@@ -57,6 +58,9 @@ def channels_in(document: Document) -> Iterator[Channel[Any]]:
     for switch in document.switch_groups:
         if switch.keys:
             yield Channel(SWITCH, part=switch.name)
+    for sound in document.sounds:
+        if sound.keys:
+            yield Channel(VOLUME, part=sound.name)
     for layer in document.layers:
         yield from channels_of(layer)
 
@@ -82,6 +86,8 @@ def _scene_keys(document: Document, channel: Channel[Any]) -> tuple[BaseKey, ...
     if channel.kind is SWITCH:
         groups = {each.name: each.keys for each in document.switch_groups}
         return groups.get(str(channel.part), ())
+    if channel.kind is VOLUME:
+        return next((each.keys for each in document.sounds if each.name == channel.part), ())
     return document.camera if channel.kind is CAMERA else document.markers
 
 
@@ -106,7 +112,7 @@ def all_keys(document: Document) -> KeysByChannel:
 
 def describe_channel(document: Document, channel: Channel[Any]) -> str:
     """Return the name of a channel with its owner, for messages."""
-    owner = channel.part if channel.kind is SWITCH else None
+    owner = channel.part if isinstance(channel.part, str) else None
     layer = None if channel.layer is None else document.find_layer(channel.layer)
     if layer is not None:
         owner = layer.name

@@ -15,7 +15,9 @@ from app.document.channels.kinds import (
     SWITCH,
     TRANSFORM,
     VISIBILITY,
+    VOLUME,
 )
+from app.document.channels.sounds import Sound
 from app.document.channels.values import Camera, DrawOrder
 from app.document.layer import Layer
 from app.document.model import Document
@@ -63,6 +65,12 @@ def opacity_at(document: Document, layer: Layer, frame: float) -> float:
     """Return the opacity of a layer at a frame, 0 to 1."""
     opacity = layer_value_at(document, layer, OPACITY, frame)
     return layer.opacity if opacity is None else opacity
+
+
+def volume_at(document: Document, sound: Sound, frame: float) -> float:
+    """Return the volume of a sound at a frame, 0 to 1."""
+    volume = interpolated_value(document, VOLUME, sound.keys, frame)
+    return sound.volume if volume is None else volume
 
 
 def draw_order_key_at(document: Document, layer: Layer, frame: float) -> Key[DrawOrder] | None:
@@ -119,6 +127,8 @@ def value_at(document: Document, channel: Channel[V], frame: float) -> V:
         found = camera_at(document, frame) or Camera(complex(*document.canvas) / 2)
     elif kind is SWITCH:
         found = with_repeats(document, document.switch_group(str(channel.part))).layer_at(frame)
+    elif kind is VOLUME:
+        found = volume_at(document, document.sound(str(channel.part)), frame)
     else:
         layer = document.layer(channel.layer or 0)
         if not kind.is_held:

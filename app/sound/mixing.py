@@ -1,0 +1,94 @@
+"""The mix of a document's sounds: samples of any range, of equal times whatever the range.
+
+A frame lasts 1 / fps seconds. Sample n of the mix is at n / rate seconds from frame 0.
+"""
+
+from collections import Counter
+from collections.abc import Iterable
+from typing import Final
+
+import numpy as np
+
+from app.document import Document, Sound, SoundFile, volume_at
+from app.sound.decoder import SoundDecoder
+from app.sound.samples import Samples, resample
+
+USUAL_RATE: Final = 48_000
+
+
+def common_rate(sounds: Iterable[Sound]) -> int:
+    """Return the rate of most sounds, so that they are not converted."""
+    counts = Counter(sound.file.rate for sound in sounds)
+    return counts.most_common(1)[0][0] if counts else USUAL_RATE
+
+
+class _SoundReader:
+    """Reads any part of a sound file; zeros are outside of it."""
+
+    def __init__(self, file: SoundFile, data: bytes) -> None:
+        self._file = file
+        self._decoder = SoundDecoder(data, file.name)
+
+    def read(self, first: int, count: int) -> Samples:
+        found = np.zeros((count, 2), dtype=np.float32)
+        begin, end = max(first, 0), min(first + count, self._file.samples)
+        if begin < end:
+            self._decoder.seek(begin)
+            known = self._decoder.read(end - begin)
+            found[begin - first : begin - first + len(known)] = known
+        return found
+
+
+class SoundMix:
+    """The sounds of a document that are heard, at a rate.
+
+    Reading goes on quickly where it stopped; a jump in an MP3 file decodes it from its beginning.
+    """
+
+    def __init__(self, document: Document, rate: int) -> None:
+        self._document, self.rate = document, rate
+        self._sounds = [each for each in document.sounds if not each.muted and each.file.data]
+        self._readers = {
+            each.name: _SoundReader(each.file, each.file.data)
+            for each in self._sounds
+            if each.file.data
+        }
+
+    @property
+    def is_silent(self) -> bool:
+        return not self._sounds
+
+    def sample_at(self, frame: float) -> int:
+        """Return the sample at the beginning of a frame."""
+        return round(frame / self._document.fps * self.rate)
+
+    def read(self, first: int, count: int) -> Samples:
+        """Return samples (count, 2); beyond −1 to 1 where loud sounds meet."""
+        mixed = np.zeros((count, 2), dtype=np.float32)
+        for sound in self._sounds:
+            start = self.sample_at(sound.start)
+            begin = max(first, start)
+            end = min(first + count, start + round(sound.length * self.rate))
+            if begin < end:
+                part = self._part(sound, begin - start, end - begin)
+                mixed[begin - first : end - first] += self._volume(sound, begin, end) * part
+        return mixed
+
+    def _part(self, sound: Sound, first: int, count: int) -> Samples:
+        """Return samples of a sound, counted from its start."""
+        reader, rate = self._readers[sound.name], sound.file.rate
+        if rate == self.rate:
+            return reader.read(first + round(sound.skip * rate), count)
+        # A cut is rounded to samples of the mix.
+        cut = round(sound.skip * self.rate)
+        return resample(reader.read, first + cut, count, rate, self.rate)
+
+    def _volume(self, sound: Sound, begin: int, end: int) -> Samples | float:
+        """Return the volume of samples (n, 1), straight between frames."""
+        if not sound.keys:
+            return sound.volume
+        per_frame = self.rate / self._document.fps
+        frames = np.arange(int(begin // per_frame), int(end // per_frame) + 2)
+        known = [volume_at(self._document, sound, float(frame)) for frame in frames]
+        volume = np.interp(np.arange(begin, end) / per_frame, frames, known)
+        return volume.astype(np.float32)[:, None]
