@@ -162,6 +162,7 @@ class ExportFormat:
     keeps_order: bool = True  # whether the draw order may change over time
     composites: bool = True  # whether the file shows blend modes, clipping and group opacity
     largest: int | None = None  # side of a picture in pixels
+    has_sound: bool = False  # whether the file carries the sounds
     is_still: bool = False  # one frame: at the playhead, or the first
     block: int = 1  # the sides of a picture are multiples of this number of pixels
     fastest: float | None = None  # pictures per second
@@ -229,8 +230,9 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             label=_("MP4 video"),
             group=_("Video"),
             use=_("Plays everywhere, small; no transparency, even sides only."),
-            about=_("H.264 video; needs a background colour"),
+            about=_("H.264 video with the sounds as AAC; needs a background colour"),
             suffixes=(".mp4",),
+            has_sound=True,
             is_transparent=False,
             largest=16_384,
             block=2,
@@ -240,8 +242,11 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             label=_("WebM video"),
             group=_("Video"),
             use=_("For browsers: small, with soft transparency; few editors read it."),
-            about=_("VP9 video, with transparency unless there is a background colour"),
+            about=_(
+                "VP9 video with the sounds as Opus; transparent unless there is a background colour"
+            ),
             suffixes=(".webm",),
+            has_sound=True,
             largest=16_384,
             extra="video",
         ),
@@ -250,10 +255,11 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             group=_("Video"),
             use=_("For video editors: nearly exact, with transparency; large files."),
             about=_(
-                "ProRes 4444 video, with transparency (straight alpha) unless there is a "
-                "background colour"
+                "ProRes 4444 video with the sounds uncompressed; transparent (straight alpha) "
+                "unless there is a background colour"
             ),
             suffixes=(".mov",),
+            has_sound=True,
             largest=16_384,
             extra="video",
         ),
@@ -298,9 +304,11 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             use=_("For the web: one file, sharp at any size; needs a browser with WebGL 2."),
             about=_(
                 "one page that plays the same shapes as glb with WebGL 2 and needs no other "
-                "files. It fills its frame. Drag to scrub, and click to pause"
+                "files. It fills its frame. Drag to scrub, and click to pause. It carries the "
+                "sounds, which take much of its size"
             ),
             suffixes=(".html", ".htm"),
+            has_sound=True,
             is_drawn=False,
             options="shapes",
         ),

@@ -173,6 +173,7 @@ class ExportSettings(FormatSettings):
     framing: Framing = "fit"
     frames: FrameRange | None = None
     names: str = FRAME_NAMES
+    sound: bool = True  # whether formats that can carry sounds carry them
     earlier: tuple[PictureSettings, ...] = ()
 
     def __post_init__(self) -> None:

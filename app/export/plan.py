@@ -29,6 +29,7 @@ from app.export.framing import check_blocks, check_largest_size, frame_view, lis
 from app.export_formats import EXPORT_FORMATS, FormatSettings
 from app.motion import BoundingBox, bounding_box, motion_bounding_box
 from app.render import View
+from app.sound import Soundtrack, find_soundtrack, list_sound_notices
 from app.texts import _, ngettext
 
 # Minimum of bytes per frame pixel: an empty PNG has about as many.
@@ -110,6 +111,7 @@ class ExportPlan(FormatSettings):
     loop: bool
     frame_names: FrameNames
     tags: tuple[FrameTag, ...]
+    soundtrack: Soundtrack | None = None  # of the pictures; of meshes, of the span
     notices: tuple[str, ...] = ()
 
     @property
@@ -204,9 +206,13 @@ def plan_export(
     LissomError
         If the motion fails at some frame.
     """
-    settings = request.settings
-    frames = _frames(document, settings)
+    settings, frames = request.settings, _frames(document, request.settings)
     times = tuple(frame_times(document, frames, request.fps))
+    fps = document.fps if request.fps is None else request.fps
+    # The pictures of a loop leave out its last frame, which equals the first.
+    end = frames.last if settings.frames is not None else document.frames.last
+    is_drawn = EXPORT_FORMATS[settings.format].is_drawn
+    seconds = (len(times) if is_drawn else end - frames.first) / fps
     rest = np.concatenate([layer.domain.mesh.vertices for layer in document.exported_layers])
     if settings.framing == "fit" and not document.camera and extent is None:
         extent = motion_bounding_box(
@@ -221,20 +227,26 @@ def plan_export(
         background=_colour(settings.background),
         times=times,
         first=frames.first,
-        span=(frames.first, _end(document, settings, frames)),
+        span=(frames.first, end),
         canvas=document.canvas,
-        fps=document.fps if request.fps is None else request.fps,
+        fps=fps,
         loop=document.loop,
         frame_names=request.names,
         tags=_tags(document, request, times),
+        soundtrack=find_soundtrack(document, settings, frames.first, seconds),
         **settings.options(),
     )
-    if EXPORT_FORMATS[plan.format].is_drawn:
+    if is_drawn:
         check_largest_size(plan.format, plan.view.size)
         width, height = plan.view.size
         check_room(plan.out, int(LEAST * width * height * len(times)))
     return replace(
-        plan, notices=(*_left_frames(plan), *list_added_pixels(plan.format, plan.view.size))
+        plan,
+        notices=(
+            *_left_frames(plan),
+            *list_added_pixels(plan.format, plan.view.size),
+            *list_sound_notices(document, settings, plan.soundtrack),
+        ),
     )
 
 
@@ -260,12 +272,6 @@ def _tags(
         if inside:
             found.append(FrameTag(marker.name, inside[0], inside[-1]))
     return tuple(found) or (FrameTag(request.project, 0, len(times) - 1),)
-
-
-def _end(document: Document, settings: ExportSettings, frames: FrameRange) -> int:
-    """Return the last frame of a continuous motion."""
-    # The pictures of a loop leave out its last frame, which equals the first.
-    return frames.last if settings.frames is not None else document.frames.last
 
 
 def _colour(background: str) -> tuple[int, int, int] | None:

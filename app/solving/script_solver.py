@@ -25,6 +25,7 @@ from app.document import (
 from app.errors import LissomError
 from app.solving.drag_solver import DragSolver, Rig
 from app.solving.script.pose_script import LayerScript, PoseKey, PoseScript
+from app.solving.script.sounds import with_sounds
 from app.solving.script_scene import (
     find_layer,
     resolve_channels,
@@ -84,6 +85,7 @@ def pose_document(
         document = document.with_layer(layer)
         notices += found
     document = with_switch_groups(with_world_transforms(document, script), script)
+    document = with_sounds(document, script.sounds, script.folder)
     return document, (
         *notices,
         *warn_unused_transforms(document, script),

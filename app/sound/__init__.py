@@ -13,3 +13,8 @@ from app.sound.inspection import (
 )
 from app.sound.mixing import SoundMix as SoundMix, common_rate as common_rate
 from app.sound.samples import Samples as Samples
+from app.sound.soundtrack import (
+    Soundtrack as Soundtrack,
+    find_soundtrack as find_soundtrack,
+    list_sound_notices as list_sound_notices,
+)

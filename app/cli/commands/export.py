@@ -107,6 +107,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                 is_whole = isinstance(usual, int)
                 how = {"metavar": "N" if is_whole else "PX", "type": int if is_whole else float}
             parser.add_argument(f"--{option.flag}", dest=name, help=_(option.description), **how)
+    parser.add_argument(
+        "--sound",
+        choices=("all", "none"),
+        help=_("carry the sounds, or leave them out (default: the project's setting, all)"),
+    )
     parser.add_argument("--layer", metavar="NAME", help=_("export this layer alone"))
     # Its name in earlier versions.
     parser.add_argument("--figure", dest="layer", metavar="NAME", help=argparse.SUPPRESS)
@@ -156,6 +161,7 @@ def _settings(own: "ExportSettings", arguments: argparse.Namespace, out: Path) -
         "framing": arguments.framing,
         "frames": None if frames is None else FrameRange(*frames),
         "names": arguments.names,
+        "sound": None if arguments.sound is None else arguments.sound == "all",
     }
     options = {
         group: replace(

@@ -152,6 +152,16 @@ rest, unless they have an ease.
 "tangent_mode" is through, corner or stop. It is corner by default for opacity, otherwise through.
 A channel is set in one place: here, or by "movement", "opacity", "order", "visible" or "front".
 
+Sounds are files beside the script:
+
+   "sounds": [{"file": "talk.wav", "at": 12, "from": 0.5, "to": 3, "volume": 0.8}]
+
+A sound (WAV, FLAC, MP3 or OGG Vorbis) begins at the frame "at", by default 0, and is heard at its
+own speed. "from" and "to" are seconds of its file, by default all of it. "volume" is from 0 to 1,
+by default 1, or a list of keys: [{"frame": 0, "volume": 0}, {"frame": 12, "volume": 1}]. "name" is
+its name, by default that of the file. "muted": true silences it. The project keeps the bytes of the
+file. Sounds do not make the animation longer.
+
 examples:
   lissom pose giraffe.png nod.json --out nod.lissom
   lissom pose giraffe.png nod.json --out nod.lissom --triangles 20000 --detail fine

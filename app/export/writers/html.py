@@ -16,6 +16,7 @@ from app.export.framing import find_shown_box
 from app.export.morph_mesh import MorphMesh, MorphScene
 from app.export.plan import ExportPlan
 from app.export.writers.png import encode_png
+from app.sound import Soundtrack
 from app.storage import shader_source, strict_json
 from engine.arrays import Complexes, Floats
 
@@ -45,6 +46,7 @@ def build_html_page(scene: MorphScene, plan: ExportPlan) -> bytes:
         **{name: _HEADER + "\n".join(map(shader_source, files)) for name, files in _SHADERS},
         "figures": [_packed(shape) for shape in scene.meshes],
         "parts": _parts(scene.parts),
+        "sound": None if plan.soundtrack is None else _sound(plan.soundtrack),
         "colour": None if colour is None else [level / 255 for level in colour],
     }
     page = Template(_PAGE.read_text(encoding="utf-8")).substitute(
@@ -55,6 +57,10 @@ def build_html_page(scene: MorphScene, plan: ExportPlan) -> bytes:
         film=strict_json(film).replace("<", "\\u003c"),
     )
     return page.encode()
+
+
+def _sound(soundtrack: Soundtrack) -> str:
+    return f"data:audio/wav;base64,{_text(soundtrack.wav())}"
 
 
 def _packed(shape: MorphMesh) -> dict[str, Any]:

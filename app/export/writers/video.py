@@ -12,6 +12,7 @@ import numpy as np
 from app.errors import LissomError
 from app.export.alpha_bleed import bleed_edges
 from app.export.plan import ExportPlan
+from app.export.writers.audio import AudioStream
 from app.export.writers.frame_writer import FrameWriter
 from app.export_formats import EXPORT_FORMATS
 from app.texts import _
@@ -120,6 +121,9 @@ class VideoWriter(FrameWriter):
             # Players assume this for an unmarked video; the file states it. (The frames state their
             # range themselves.)
             context.colorspace = context.color_primaries = context.color_trc = _BT709
+            self._audio: AudioStream | None = None
+            if plan.soundtrack is not None:
+                self._audio = AudioStream(self._container, plan.format, plan.soundtrack)
             self._container.start_encoding()
         except (av.FFmpegError, ValueError) as error:
             raise LissomError(
@@ -147,11 +151,15 @@ class VideoWriter(FrameWriter):
         frame.pts = self._count
         self._count += 1
         self._container.mux(self._stream.encode(frame))
+        if self._audio is not None:
+            self._audio.write_until(self._count / self._plan.fps)
         self._sink.check()
 
     def finish(self) -> None:
-        """Write the last frames and the index."""
+        """Write the last frames, the rest of the sound and the index."""
         self._container.mux(self._stream.encode(None))
+        if self._audio is not None:
+            self._audio.finish()
         self._container.close()
         self._sink.check()
 

@@ -17,6 +17,7 @@ from app.document import (
     SWITCH,
     TRANSFORM,
     VISIBILITY,
+    VOLUME,
     ChannelKeys,
     ChannelKind,
     Key,
@@ -63,7 +64,9 @@ CODECS = {
     Quantity.LAYER: TEXT,
     Quantity.ANGLE: Codec(degrees, lambda content, where: radians(as_number(content, where))),
 }
-KEYS = {each.name: key_codec(each, CODECS) for each in (*LAYER_KINDS.values(), CAMERA, SWITCH)}
+KEYS = {
+    each.name: key_codec(each, CODECS) for each in (*LAYER_KINDS.values(), CAMERA, SWITCH, VOLUME)
+}
 
 
 def parse_channels(

@@ -123,6 +123,17 @@ def _choice(content: object, where: str) -> ScriptSwitchGroup:
     return ScriptSwitchGroup(name=name, layers=layers, keys=keys)
 
 
+def check_distinct_layers(names: Sequence[str | None]) -> None:
+    """Refuse a script that names a layer twice."""
+    for name in names:
+        if names.count(name) > 1:
+            raise LissomError(
+                _("two layers have the name {name!r}; rename one of them, or leave one out").format(
+                    name=name
+                )
+            )
+
+
 def parse_canvas(content: object) -> tuple[int, int]:
     sides = as_list(content, "canvas")
     if len(sides) != 2:

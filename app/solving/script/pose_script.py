@@ -37,11 +37,13 @@ from app.solving.script.fields import (
 from app.solving.script.layers import (
     ScriptAttachment,
     ScriptSwitchGroup,
+    check_distinct_layers,
     parse_attachments,
     parse_canvas,
     parse_switch_groups,
 )
 from app.solving.script.material import StiffRegion, parse_material
+from app.solving.script.sounds import ScriptSound, parse_sounds
 from app.solving.script.tracks import check_loop_periods, parse_cycles, parse_springs, parse_tracks
 from app.storage import (
     JsonObject,
@@ -59,7 +61,7 @@ from engine.maps import Bounds
 
 SCHEMA = 1
 LARGEST = 32 * 1024 * 1024  # bytes
-SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still", "camera", "canvas")
+SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still", "camera", "canvas", "sounds")
 MOVING_FIELDS = ("keys", "tracks", "springs", "cycles", "movement", "opacity", "channels")
 OWN_FIELDS = ("anchor", "handles", *MOVING_FIELDS, "stiff")
 STAGE_FIELDS = ("layers", "choices")
@@ -139,6 +141,8 @@ class PoseScript:
     choices: tuple[ScriptSwitchGroup, ...] = ()
     camera: tuple[Key[Camera], ...] = ()
     canvas: tuple[int, int] | None = None  # None takes the drawing's size
+    sounds: tuple[ScriptSound, ...] = ()
+    folder: Path = Path()  # of the script and the files that it names
 
     @property
     def last(self) -> int:
@@ -148,7 +152,7 @@ class PoseScript:
 
 def load_pose_script(path: Path) -> PoseScript:
     """Read a pose script; an invalid or missing file raises a `LissomError`."""
-    return load_json(path, parse_pose_script, largest=LARGEST)
+    return replace(load_json(path, parse_pose_script, largest=LARGEST), folder=path.parent)
 
 
 def parse_pose_script(content: object) -> PoseScript:
@@ -182,13 +186,7 @@ def parse_pose_script(content: object) -> PoseScript:
         fields = read_fields(entry, where[:-1], LAYER_FIELDS)
         layers.append(_layer(fields, where, usual, loop=loop))
     names = [layer.layer for layer in layers]
-    for name in names:
-        if names.count(name) > 1:
-            raise LissomError(
-                _("two layers have the name {name!r}; rename one of them, or leave one out").format(
-                    name=name
-                )
-            )
+    check_distinct_layers(names)
     if not layers:
         raise LissomError(_("layers must be a list of at least one layer"))
     switched = [each.layer for each in layers if each.channels.get((VISIBILITY.name, None))]
@@ -199,6 +197,7 @@ def parse_pose_script(content: object) -> PoseScript:
         choices=parse_switch_groups(script, switched),
         camera=parse_camera(script["camera"]) if script.get("camera") is not None else (),
         canvas=parse_canvas(script["canvas"]) if script.get("canvas") is not None else None,
+        sounds=parse_sounds(script.get("sounds", [])),
     )
     for index, layer in enumerate(layers if parsed.loop else ()):
         where = "" if layer.layer is None else f"layers[{index}]."

@@ -104,6 +104,7 @@ EXPORT = nested_record(
     Field("framing", TEXT),
     Field("frames", optional(RANGE)),
     Field("names", TEXT, legacy_default=FRAME_NAMES),
+    Field("sound", FLAG, default=True),
     Field(
         "earlier",
         list_of(

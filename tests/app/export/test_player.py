@@ -10,6 +10,7 @@ from animations import moving_document
 from chromium import PROGRAM, Page, chromium
 from documents import altered
 from PIL import Image
+from sound_files import sine, sound, wav
 
 from app.document import (
     BLENDS,
@@ -261,3 +262,20 @@ def test_a_still_and_a_page_without_motion(browser, tmp_path):
     exported(still, out)
     page = opened(browser, out)
     assert shown(page, 3.0)[..., 3].max() == 255
+
+
+def test_the_sound_of_a_page_leads_its_picture(browser, tmp_path):
+    talk = sound(wav(sine(2.0)))
+    document, out = replace(two_blobs(), sounds=(talk,), fps=8.0), tmp_path / "a.html"
+    exported(document, out)
+    page = opened(browser, out)
+    page.run("new Promise(done => voice.readyState ? done() : voice.onloadedmetadata = done)")
+    assert page.run("voice.duration") == pytest.approx(1.0)
+    page.run("lissom.pause(); lissom.show(0.25)")
+    assert page.run("voice.currentTime") == pytest.approx(0.25)
+    # A player that stands at another time: the picture goes there.
+    page.run(
+        "new Promise(done => { playing = true; Object.defineProperty(voice, 'paused', "
+        "{ get: () => false }); voice.currentTime = 0.5; step(0); playing = false; done(); })"
+    )
+    assert page.run("lissom.time") == pytest.approx(0.5)
