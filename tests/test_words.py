@@ -25,8 +25,6 @@ REPLACED_LONG = {
     "app/document/layer.py",
     "app/document/model.py",
     "app/editor/actions/frame_update.py",
-    "app/editor/project.py",
-    "app/editor/work/drag_session.py",
     "app/motion/inbetween_cache.py",
     "app/motion/inbetweens/pose_sampler.py",
     "app/solving/drag_solver.py",

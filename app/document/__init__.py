@@ -86,10 +86,11 @@ from app.document.commands.layers import (
 from app.document.commands.pose_commands import (
     with_all_targets as with_all_targets,
 )
-from app.document.history import (
+from app.document.history.undo_history import (
     History as History,
+)
+from app.document.history.undo_step import (
     PreviewPose as PreviewPose,
-    UnfinishedChange as UnfinishedChange,
 )
 from app.document.keyframe import (
     MAX_REVOLUTIONS as MAX_REVOLUTIONS,

@@ -45,7 +45,7 @@ def begin_pending_change(
 
     def arrived(result: Result) -> None:
         if _end_pending_change(session, project, pending):
-            if project.drag is None or not pending.changes:
+            if not (project.history.is_unfinished and pending.changes):
                 done(result)
             else:
                 # The drag goes on under the hand.
@@ -76,9 +76,8 @@ def is_document_idle(project: Project, *, after_saves: bool = False) -> bool:
 
     With `after_saves`, a running save counts as well.
     """
-    if project.stale_layer is not None:
+    if project.stale_layer is not None or project.history.is_held:
         return False
-
     return not any(change.changes or after_saves for change in project.pending.changes)
 
 
@@ -152,6 +151,8 @@ def deferred_label(project: Project) -> str:
 def pending_label(project: Project) -> str:
     """Return the label of a pending change or save."""
     labels = [change.label for change in project.pending.changes]
+    if project.history.is_held and project.drag is None:
+        labels.append(project.history.undo_label or "")
     if project.stale_layer is not None:
         labels.append(_("Cutting out"))
     return ", ".join(dict.fromkeys(labels))

@@ -18,7 +18,6 @@ from app.document import (
     History,
     Layer,
     Pose,
-    PreviewPose,
     TreeRow,
     Variant,
     camera_at,
@@ -78,8 +77,7 @@ class Project(Revised):
     @property
     def document(self) -> Document:
         """The document as displayed: with the preview of an unfinished drag."""
-        document, drag = self.history.document, self.drag
-        return document if drag is None else drag.applied_to(document)
+        return self.history.document
 
     @property
     def layer(self) -> Layer:
@@ -174,17 +172,9 @@ class Project(Revised):
         ]
 
     @property
-    def preview_pose(self) -> PreviewPose | None:
-        """The unkeyed pose as displayed, if any."""
-        drag = self.drag
-        if drag is None or drag.is_keyed or drag.preview is None:
-            return self.history.preview_pose
-        return PreviewPose(layer=drag.layer, frame=drag.frame, pose=drag.preview)
-
-    @property
     def unkeyed_pose(self) -> Pose | None:
         """The unkeyed pose of the active layer at this frame, if any."""
-        unkeyed = self.preview_pose
+        unkeyed = self.history.preview_pose
         if (
             unkeyed is None
             or unkeyed.layer != self.selection.active

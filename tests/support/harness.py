@@ -215,7 +215,7 @@ class Harness:
             self.frames()
             project = self.session.project
             drag = project.drag if project else None
-            is_at_rest = drag is None or (drag.is_held and drag.is_at_rest)
+            is_at_rest = drag is None or (project.history.is_held and drag.is_at_rest)
             if not self.session.jobs.kinds and is_at_rest:
                 break
             assert self.session.jobs.wait_until_idle(PATIENCE), self.session.jobs.kinds

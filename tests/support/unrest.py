@@ -18,7 +18,9 @@ def unrest(session: Session) -> str:
     ]
     drag = project.drag
     if drag is not None:
-        lines.append(f"drag: layer {drag.layer}, frame {drag.frame}, held {drag.is_held}")
+        lines.append(
+            f"drag: layer {drag.layer}, frame {drag.frame}, held {project.history.is_held}"
+        )
     lines += [
         f"waits until nothing is on its way: {each.what!r}" for each in project.pending.deferred
     ]

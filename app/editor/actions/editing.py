@@ -24,14 +24,11 @@ from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement
 from app.editor.actions.posing.pose_commit import drop_drag
 from app.editor.actions.posing.pose_drag import revert_drag
-from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.texts import N_, _
 
 Arguments = ParamSpec("Arguments")
-
-
 FIRST_KEY_STAYS = N_("The first key of {layers} was not deleted. A layer needs at least one key.")
 UNDONE, REDONE = _("Undone: {step}"), _("Redone: {step}")
 
@@ -40,8 +37,8 @@ UNDONE, REDONE = _("Undone: {step}"), _("Redone: {step}")
 def edit_document(
     session: Session, project: Project, command: Command, *, gesture: object = None
 ) -> None:
-    """Run a command; commands of one gesture, by default one use of a widget, are one undo step."""
-    project.history.do(command, gesture=gesture or session.tools.widget_gesture)
+    """Run a command; it is a preview until the end of a gesture, by default one use of a widget."""
+    project.history.preview(command, gesture or session.tools.widget_gesture)
     _forget_what_is_gone(project)
 
 
@@ -59,15 +56,14 @@ def edit_layer(
 
 
 def note_widget_in_use(session: Session, widget: int) -> None:
-    """Note the number of the widget in use, 0 for none, when another one is.
-
-    Commands of one use of a widget are one undo step.
-    """
+    """Note the number of the widget in use, 0 for none; one use of a widget is one undo step."""
+    if session.project is not None:
+        session.project.history.release(session.tools.widget_gesture)
     session.tools.use_widget(widget)
 
 
 def _undo_text(session: Session, project: Project) -> str:
-    step = project.history.undo_label if project.drag is None else project.drag.command.label
+    step = project.history.undo_label
     draft = session.tools.motion_setup
     if draft is not None and draft.past:
         step = _("Move a joint")
@@ -85,7 +81,7 @@ def _undo_text(session: Session, project: Project) -> str:
 )
 @with_project
 def undo(session: Session, project: Project) -> None:
-    """Undo the last step; a drag that is held, or shows no pose yet, is cancelled.
+    """Undo the last step; a change that the hand holds, or a drag without a pose, is cancelled.
 
     A pending action that was asked for last is cancelled first; so is a pending motion. While a
     motion is drafted, undo changes only its joints.
@@ -98,28 +94,41 @@ def undo(session: Session, project: Project) -> None:
         apply_motion.cancel_motion_job(session)
         _show_step_notice(session, UNDONE, _("Apply motion preset"))
         return
-    drag = project.drag
-    is_held = drag is not None and drag.is_held
+    drag, history = project.drag, project.history
+    is_held = history.is_held or session.tools.active_tool is not None
     waiting = None if is_held else pending_changes.cancel_deferred_action(project)
     if waiting is not None:
         _show_step_notice(session, UNDONE, waiting)
         return
-    before, unkeyed = project.document, project.preview_pose
-    if drag is not None and (is_held or drag.start is None):
-        project.pending.interrupt(drag)
-        drop_drag(session, project, drag)
-        # Other edits of its gestures, such as a new handle.
-        for gesture in (*drag.target_changes, drag.gesture):
-            project.history.revert(gesture)
+    before, unkeyed = project.document, history.preview_pose
+    if is_held or (drag is not None and drag.start is None):
+        cancel_change(session)
     else:
-        steps = project.history.revision
-        finish_drag(session, project)
+        position = history.position
+        history.commit()
         # A drag that fails leaves no step to undo.
-        if drag is None or project.history.revision != steps:
-            _show_step_notice(session, UNDONE, project.history.undo_label)
-            project.history.undo()
+        if history.position == position:
+            _show_step_notice(session, UNDONE, history.undo_label)
+            history.undo()
     _forget_what_is_gone(project)
     _go_to_change(session, project, before, unkeyed)
+
+
+@named_action(
+    _("Cancel change"),
+    "Escape",
+    why_disabled=unless(lambda _, project: project.history.is_held, _("Nothing is dragged.")),
+)
+@with_project
+def cancel_change(session: Session, project: Project) -> None:
+    """Undo what the hand changes; its later moves are void."""
+    tool = session.tools.end()
+    if tool is not None:
+        tool.cancel(session)
+    if project.drag is not None:
+        drop_drag(session, project, project.drag)
+    project.history.cancel()
+    _forget_what_is_gone(project)
 
 
 @with_project
@@ -131,7 +140,7 @@ def revert_gesture(session: Session, project: Project, gesture: object) -> None:
 
 
 def _redo_text(_session: Session, project: Project) -> str:
-    step = project.history.redo_label if project.drag is None else None
+    step = project.history.redo_label
     return "" if step is None else _("Redo “{step}”").format(step=step)
 
 
@@ -144,9 +153,9 @@ def _redo_text(_session: Session, project: Project) -> str:
 )
 @with_project
 def redo(session: Session, project: Project) -> None:
-    if project.history.redo_label is None or project.drag is not None:
+    if project.history.redo_label is None:
         return
-    before, unkeyed = project.document, project.preview_pose
+    before, unkeyed = project.document, project.history.preview_pose
     _show_step_notice(session, REDONE, project.history.redo_label)
     project.history.redo()
     _forget_what_is_gone(project)

@@ -14,7 +14,6 @@ from app.editor.actions.posing.pose_solver import update_drag
 from app.editor.actions.posing.reach_limit import show_stopped_drag
 from app.editor.actions.tracking.correction_jobs import (
     correction_jobs_for_shown_frame,
-    is_track_drag_pending,
     next_correction_jobs,
 )
 from app.editor.actions.tracking.recording import update_track_drags
@@ -155,16 +154,16 @@ def follow_playhead(session: Session, project: Project) -> None:
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all values that decide which jobs are due."""
-    take, drag, chosen = project.timeline.recording, project.drag, project.selection
+    take, history, chosen = project.timeline.recording, project.history, project.selection
     return (
-        *(project.document, project.history.position, chosen.active, chosen.handles),
+        *(project.document, history.position, history.is_held, history.is_unfinished),
+        *(chosen.active, chosen.handles),
         *(playback.current_frame(session, project), project.timeline.playhead.since is None),
         *(session.jobs.kinds, session.jobs.delivered, session.settings.prepares_ahead),
         *(session.display.overlays, session.display.compare_view, session.export.frame_box),
         *(project.viewport.awaits_extent, session.tools.active_tool, session.tools.mode),
         *(project.selected_track, take, take and (take.is_over, len(take.samples))),
         *(project.unkeyed_pose, tuple(project.pending.changes)),
-        drag and (drag.is_held, drag.preview),
         tuple(runtime.store for runtime in project.runtimes.layers.values()),
     )
 
@@ -191,9 +190,9 @@ def _follow_document(session: Session, project: Project) -> None:
 
 
 def _is_final(session: Session, project: Project) -> bool:
-    """Return whether in-betweens are worth preparing: the pose of a drag changes until it rests."""
-    drag = project.drag
-    return drag is None or drag.is_at_rest or session.display.overlays.onion
+    """Return whether in-betweens are worth preparing: a drag changes them until it rests."""
+    is_at_rest = project.drag is not None and project.drag.is_at_rest
+    return not project.history.is_unfinished or is_at_rest or session.display.overlays.onion
 
 
 def give_up(session: Session, kind: JobKind) -> None:
@@ -222,7 +221,7 @@ def due_jobs(session: Session, project: Project) -> Iterator[Job]:
     yield from _cut(session, project)
     # Motion paths come first: the person watches them during a drag, and they are of few points.
     yield from _trace(session, project)
-    if _asks_extent(session, project) and project.drag is None:
+    if _asks_extent(session, project) and not project.history.is_unfinished:
         yield from _span(session, project)
     yield from _make_frames(session, project)
     yield from correction_jobs_for_shown_frame(session, project)
@@ -240,13 +239,11 @@ def due_jobs(session: Session, project: Project) -> Iterator[Job]:
                     room = next(_stream(session, project), None)
                 yield room or job
                 return
-    if is_track_drag_pending(session, project):
+    if project.history.is_unfinished:
+        # The jobs below take longer than a pause of the drag.
         return
     if _prepares_all(session, project):
         yield from next_correction_jobs(session, project)
-    if project.drag is not None:
-        # The jobs below take longer than a pause of the drag.
-        return
     yield from _compute_joints(session, project)
     if not session.settings.prepares_ahead:
         return
@@ -319,7 +316,7 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
         for clip, runtime in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
             if is_wanted(clip, runtime.store):
                 yield SKETCHING, runtime, clip
-    if project.drag is not None:
+    if project.history.is_unfinished:
         return
     for runtime in project.runtimes.layers.values():
         if runtime.comparison is not None:

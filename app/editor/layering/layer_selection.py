@@ -9,8 +9,7 @@ def set_active_layer(session: Session, project: Project, identity: int) -> None:
     """Make a layer active: its handles and keys are shown and edited."""
     before = project.selection.active
     if identity != before:
-        if project.drag is not None:
-            project.pending.interrupt(project.drag)
+        project.history.interrupt()
         project.layer_list.linger(before)
         project.layer_setup.forget_previews()
         session.tools.hover(None)

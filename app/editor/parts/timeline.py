@@ -82,18 +82,17 @@ class TimeRangeView:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TimeDrag:
-    """A drag in the timeline."""
+    """A drag in the timeline, of keys and edges in the document before it."""
 
     start: float  # frame of the press
-    before: Document  # at the press
-    after: Document  # with the drag applied
+    gesture: object = field(default_factory=object)  # its commands are one undo step
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyDrag(TimeDrag):
     """Drag of keys, or of copies of them."""
 
-    keys: KeysByChannel  # in `before`
+    keys: KeysByChannel  # before the drag
     channel: Channel[Any]  # of the pressed key
     pressed: int  # frame of the pressed key
     mark: KeysByChannel  # keys that the pressed mark stands for

@@ -32,8 +32,8 @@ def is_mirror_axis_shown(session: Session, project: Project) -> bool:
 
 @with_project
 def move_mirror_axis(_: Session, project: Project, x: float | None, gesture: object) -> None:
-    """Set the axis; None is the middle."""
-    project.history.do(pose_commands.set_mirror(project.selection.active, x), gesture=gesture)
+    """Set the axis during a gesture of the hand; None is the middle."""
+    project.history.preview(pose_commands.set_mirror(project.selection.active, x), gesture)
 
 
 @with_project
@@ -47,8 +47,10 @@ def flip_pose_again(session: Session, project: Project, gesture: object) -> None
         pasting.paste_poses(session, project, found, "flipped", by, gesture=gesture)
 
 
-def set_mirror_axis(session: Session, x: float | None) -> None:
+@with_project
+def set_mirror_axis(session: Session, project: Project, x: float | None) -> None:
     """Set the axis, None is the middle, and flip the last flipped poses again."""
     gesture = object()
     move_mirror_axis(session, x, gesture)
     flip_pose_again(session, gesture)
+    project.history.release(gesture)

@@ -54,6 +54,7 @@ class MirrorAxisTool(Tool):
     def end(self, session: Session, _: complex) -> None:
         """Flip the last flipped poses again."""
         flipping.flip_pose_again(session, gesture=self)
+        self.project.history.release(self)
 
     def shapes(self, _place: complex, _em: float) -> Iterable[OverlayShape]:
         return self.typed.shapes(self.start, "px") if self.typed.text else ()

@@ -10,7 +10,7 @@ from typing import Self
 from app.document import Target
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import add_handle
-from app.editor.actions.posing.pose_drag import drag_handles, release_drag, release_drag_forced
+from app.editor.actions.posing.pose_drag import drag_handles, release_drag_forced
 from app.editor.actions.tracking.recording import (
     discard_recording,
     drag_recorded_handle,
@@ -18,7 +18,6 @@ from app.editor.actions.tracking.recording import (
     stop_recording,
 )
 from app.editor.actions.tracking.track_dragging import (
-    cancel_track_drag,
     drag_track_handle,
     draggable_track,
 )
@@ -183,12 +182,10 @@ class PoseTool(Tool):
         """
         if self.records:
             stop_recording(session, has_moved=self.moved)
-        elif self.tracked is not None:
-            pass
         elif session.tools.is_forcing_targets:
             release_drag_forced(session)
         else:
-            release_drag(session)
+            self.project.history.release(self)
         if not self.moved and self.taken is not None:
             editing.select_handles(session, self.project.layer.grouped_handles(self.taken))
 
@@ -196,7 +193,6 @@ class PoseTool(Tool):
         """Undo the drag; the playhead goes back to its earlier frame."""
         if self.records:
             discard_recording(session)
-        cancel_track_drag(self.project, self)
         if self.stood is not None:
             playback.seek(session, self.stood)
         super(PoseTool, self).cancel(session)

@@ -12,9 +12,8 @@ from typing import Self
 from app.document import Target
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import remove_handles
-from app.editor.actions.posing.pose_drag import drag_handles, release_drag
+from app.editor.actions.posing.pose_drag import drag_handles
 from app.editor.actions.tracking.track_dragging import (
-    cancel_track_drag,
     draggable_track,
     rotate_track_handle,
 )
@@ -142,12 +141,7 @@ class RotateTool(Tool):
         """End the rotation; delete the handle after a mere click."""
         if self.deletes and not self.moved:
             remove_handles(session, frozenset({self.handle}))
-        elif not self.on_track:
-            release_drag(session)
-
-    def cancel(self, session: Session) -> None:
-        cancel_track_drag(self.project, self)
-        super(RotateTool, self).cancel(session)
+        self.project.history.release(self)
 
     @classmethod
     def idle_shapes(

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Command, Document, Easing, Layer, Pose, Target, key_commands
+from app.document import Clip, Easing, Layer, Pose, Target
 from app.editor.work.pending_change import PendingChange
 from app.solving import DragSolver
 from app.texts import _
@@ -89,8 +89,6 @@ class DragSession(PendingChange):
         The result of all changes; None without a start.
     dragged_handles : frozenset of int
         Ids of the handles with changed targets.
-    is_held : bool
-        Whether it goes on: until the release.
     solver : DragSolver, optional
         The solver's state; None until its first steps are done.
     solved : tuple of mapping of int to Target and tuple of BoundedPull, optional
@@ -120,34 +118,16 @@ class DragSession(PendingChange):
     translations: dict[object, complex] = field(default_factory=dict)
     targets: Mapping[int, Target] | None = None
     dragged_handles: frozenset[int] = frozenset()
-    is_held: bool = False
     solver: DragSolver | None = None
     solved: tuple[Mapping[int, Target], tuple[BoundedPull, ...]] | None = None
     steps: int = 0
     found: Pose | None = None
     newest: Pose | None = None
     preview: Pose | None = None
-    _previewed: tuple[Document, Pose, Document] | None = None  # document, preview, both together
 
     @property
     def layer(self) -> int:
         return self.clip.layer.id
-
-    @property
-    def command(self) -> Command:
-        """The command that keys the preview."""
-        return Command(_("Move") if self.translations else _("Pose"), self.applied_to)
-
-    def applied_to(self, document: Document) -> Document:
-        """Return the document with the preview as a key."""
-        pose = self.preview
-        if pose is None or not self.is_keyed:
-            return document
-        known = self._previewed
-        if known is None or known[0] is not document or known[1] is not pose:
-            command = key_commands.insert_pose(self.layer, self.frame, pose, self.easing)
-            known = self._previewed = document, pose, command(document)
-        return known[2]
 
     def change_targets(
         self, gesture: object, change: TargetChange, hand: BoundedPull | None = None

@@ -3,7 +3,7 @@
 from collections.abc import Container
 from dataclasses import dataclass, field
 
-from app.editor.work.drag_session import DragSession, StoppedDrag
+from app.editor.work.drag_session import StoppedDrag
 from app.editor.work.pending_change import DeferredAction, PendingChange
 from app.editor.work.revised import Revised
 
@@ -14,8 +14,6 @@ class PendingWork(Revised):
 
     changes: list[PendingChange] = field(default_factory=list)
     deferred: list[DeferredAction] = field(default_factory=list)  # in the order of the requests
-    # The gestures of the last drag that ended while it was held; their later moves are void.
-    ended_gestures: frozenset[object] = frozenset()
     stopped_drag: StoppedDrag | None = None  # to be shown in a notice
     polled: tuple[object, ...] = ()  # the inputs of the last poll for due jobs
     settled: tuple[object, ...] = ()  # the inputs of the shown frame at its last update
@@ -40,12 +38,6 @@ class PendingWork(Revised):
     def drop_deferred(self, dropped: Container[DeferredAction]) -> None:
         """Run or cancel deferred actions: they wait no more."""
         self.deferred = [each for each in self.deferred if each not in dropped]
-
-    def interrupt(self, drag: DragSession) -> None:
-        """End the hold of a drag; later moves of its gestures are void."""
-        if drag.is_held:
-            drag.is_held = False
-            self.ended_gestures = frozenset(drag.target_changes)
 
     def stop_drag(self, stopped: StoppedDrag) -> None:
         """Note a drag whose targets are out of reach."""

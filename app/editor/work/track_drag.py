@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from app.document import Document, Playhead, Track
+from app.document import Playhead
 from app.editor.work.pending_change import PendingChange
 from app.texts import _
 
@@ -55,8 +55,6 @@ class Recording:
         The first handle of the track.
     gesture : object
         Edits of one gesture are one undo step.
-    before : Track, optional
-        The handle's track before the recording.
     playhead : Playhead
         The playhead that has run since the drag began.
     last : int
@@ -71,14 +69,13 @@ class Recording:
         From 0 to 1.
     has_moved : bool
         Whether the pointer has moved. Otherwise it is a click, unless the body moved under it.
-    after : Document, optional
-        The document with the recorded track; None before it is written.
+    is_written : bool
+        Whether the track has the recorded keys.
     """
 
     layer: int
     handle: int
     gesture: object
-    before: Track | None
     playhead: Playhead
     last: int
     speed: float
@@ -88,4 +85,4 @@ class Recording:
     samples: list[RecordedSample] = field(default_factory=list)
     is_over: bool = False
     has_moved: bool = True
-    after: Document | None = None
+    is_written: bool = False

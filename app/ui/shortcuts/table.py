@@ -108,6 +108,7 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
 ACTIONS = {spec.label: spec for groups in MENUS.values() for group in groups for spec in group}
 # Esc ends the first of these that is active.
 ENDED_BY_ESC = (
+    editing.cancel_change,
     move_tool.return_to_posing,
     apply_motion.cancel_motion_job,
     recording.discard_recording,

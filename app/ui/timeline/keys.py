@@ -136,8 +136,6 @@ def _press(
         mark=own,
         start=bands.pointed,
         copies=io.key_ctrl,
-        before=bands.project.document,
-        after=bands.project.document,
     )
     return [
         *select_lane(channel, chosen),

@@ -118,7 +118,7 @@ def _click(bands: TimelineLayout, gesture: TimeGesture) -> list[Action]:
         case KeyDrag(channel=channel, pressed=frame, mark=keys, copies=False):
             # Select only the keys of this mark, and show their frame.
             document = bands.project.document
-            seen = document.frames.clamp(display_frame(gesture.before, channel, frame))
+            seen = document.frames.clamp(display_frame(document, channel, frame))
             return [do(editing.select_channel_keys, keys), do(playback.scrub, seen)]
         case _:
             return []

@@ -38,7 +38,7 @@ def mark_path(
     if take is not None and len(take.samples) > 1:
         trail = np.array([sample.place for sample in take.samples])
         lines.append(Line(points=trail, colour=(*key[:3], 0.35 * key[3]), width=3.0 * scale))
-    if track is None or (take is not None and take.after is None):
+    if track is None or (take is not None and not take.is_written):
         return lines, ()
     first, last = project.clip.frames.first, project.clip.frames.last
     frames = range(first, last + 1, 1 + (last - first) // MOST)

@@ -216,7 +216,7 @@ def _state(session: Session) -> tuple[object, ...]:
     chosen, listed = project.selection, project.layer_list
     return (
         *own,
-        *(project.document, project.history.position, project.preview_pose, chosen.active),
+        *(project.document, project.history.position, project.history.preview_pose, chosen.active),
         *(chosen.handles, chosen.channel, chosen.other_layers, tuple(chosen.keys.items())),
         *(listed.toggled_rows, listed.solo, project.viewport.view, project.timeline.playhead),
     )

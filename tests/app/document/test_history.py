@@ -12,7 +12,8 @@ from app.document.commands import (
 )
 from app.document.commands.command import Command
 from app.document.commands.layers import layer_commands
-from app.document.history import History, PreviewPose, UnfinishedChange, _bytes_only_in
+from app.document.history.undo_history import History
+from app.document.history.undo_step import PreviewPose, bytes_only_in
 from app.errors import LissomError
 from app.storage.layers import make_still_layer
 
@@ -325,34 +326,98 @@ def moved(pose, by):
 def held(history):
     """Return the bytes that history counts, anew."""
     pairs = zip(history._steps, history._steps[1:], strict=False)
-    return [*(_bytes_only_in(old, new) for old, new in pairs), 0]
+    return [*(bytes_only_in(old, new) for old, new in pairs), 0]
 
 
-@pytest.mark.parametrize("change", ["do", "preview", "extend", "undo", "redo"])
-def test_a_preview_is_committed_before_any_other_change(change):
-    history, committed = History(full_document(), saved=True), []
+@pytest.mark.parametrize("change", ["do", "pose", "extend", "undo"])
+def test_open_step_is_finished_before_any_other_change(change):
+    history, finished, drag = History(full_document(), saved=True), [], object()
     history.do(set_fps(31))
     history.do(set_fps(32))
     history.undo()
 
-    def commit():
-        committed.append(history.document.fps)
-        history.do(set_fps(33))
+    def finish():
+        finished.append(history.document.fps)
+        history.do(set_fps(33), gesture=drag)
 
-    history.unfinished = UnfinishedChange(set_fps(33), commit)
+    history.begin(drag, "Drag", finish)
+    assert (history.undo_label, history.redo_label) == ("Drag", None)
+    history.do(set_fps(30), gesture=drag)
     layer = history.document.layers[0]
     pose = PreviewPose(layer=layer.id, frame=1, pose=layer.keys[0].pose)
     {
         "do": lambda: history.do(set_fps(34)),
-        "preview": lambda: history.set_preview_pose(pose),
+        "pose": lambda: history.set_preview_pose(pose),
         "extend": lambda: history.extend_step(set_fps(34)),
         "undo": history.undo,
-        "redo": history.redo,
     }[change]()
-    assert committed == [31]
-    assert history.unfinished is None
-    wanted = {"do": 34, "extend": 34, "undo": 31}
-    assert history.document.fps == wanted.get(change, 33)
+    assert finished == [30]
+    assert not history.is_unfinished
+    assert history.document.fps == {"do": 34, "pose": 33, "extend": 34, "undo": 31}[change]
+
+
+def test_command_that_changes_nothing_ends_no_drag():
+    history, drag = History(disc_document(), saved=True), object()
+    history.preview(set_fps(30), drag)
+    history.do(set_fps(30))
+    assert history.is_held
+    history.preview(set_fps(31), drag)
+    assert history.document.fps == 31
+
+
+def test_step_without_a_final_form_is_dropped():
+    history, drag = History(disc_document(), saved=True), object()
+    history.begin(drag, "Drag", lambda: history.revert(drag))
+    history.do(set_fps(30), gesture=drag)
+    history.do(scene_commands.set_loop(loop=True))
+    assert (history.document.fps, history.document.loop) == (24, True)
+    history.undo()
+    assert history.undo_label is None
+
+
+ENDINGS = {
+    "cancel": (History.cancel, 24),
+    "command": (lambda history: history.do(scene_commands.set_loop(loop=True)), 30),
+    "interrupt": (History.interrupt, 30),
+}
+
+
+@pytest.mark.parametrize("name", ENDINGS)
+def test_hand_moves_nothing_after_its_drag_has_ended(name):
+    end, fps = ENDINGS[name]
+    history, drag = History(disc_document(), saved=True), object()
+    history.preview(set_fps(30), drag)
+    assert history.is_held
+    end(history)
+    history.preview(set_fps(31), drag)
+    assert history.has_ended(drag)
+    assert not history.is_held
+    assert history.document.fps == fps
+
+
+def test_redo_is_possible_after_a_cancelled_drag():
+    history, drag = History(disc_document(), saved=True), object()
+    history.do(set_fps(30))
+    history.undo()
+    history.preview(set_fps(31), drag)
+    history.redo()
+    assert history.document.fps == 31
+    history.cancel()
+    history.redo()
+    assert history.document.fps == 30
+
+
+def test_released_drag_is_one_step():
+    history, drag = History(disc_document(), saved=True), object()
+    for fps in (30, 31, 32):
+        history.preview(set_fps(fps), drag)
+    assert (history.committed.fps, history.document.fps) == (24, 32)
+    history.release(drag)
+    assert not history.is_unfinished
+    history.undo()
+    assert (history.document.fps, history.undo_label) == (24, None)
+    history.redo()
+    assert history.document.fps == 32
 
 
 @pytest.mark.parametrize("change", ["another domain", "no layer"])

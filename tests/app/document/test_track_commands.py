@@ -26,7 +26,7 @@ from app.document.channels.tangent_mode import TangentMode
 from app.document.channels.tracks import Track, TrackKey
 from app.document.commands.keys.retime import KEYS_COLLIDE, KEYS_MEET
 from app.document.commands.scene_commands import KEY_OUTSIDE
-from app.document.history import History
+from app.document.history.undo_history import History
 from app.document.keyframe import Keyframe
 from app.document.layer import NO_HANDLE, NO_KEY
 from app.document.queries.timeline import changed_ranges, export_frame_range

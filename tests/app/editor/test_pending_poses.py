@@ -89,7 +89,7 @@ def test_moves_of_a_drag_that_a_command_ended_are_void(session):
     project, handle = session.project, session.project.layer.handles[0]
     drag_handles(session, {handle.id: Target(position=handle.position + 9)}, gesture="drag")
     settle(session)
-    assert project.drag.is_held
+    assert project.history.is_held
     project.history.do(scene_commands.set_fps(31))
     document = project.document
     drag_handles(session, {handle.id: Target(position=handle.position + 20)}, gesture="drag")
@@ -106,7 +106,7 @@ def test_result_of_a_worker_waits_for_a_drag(session):
         session, project, INSERTING, lambda: 1, lambda _: taken.append(project.drag)
     )
     settle(session)
-    assert project.drag.is_held
+    assert project.history.is_held
     assert not taken
     release_drag(session)
     settle(session)

@@ -8,7 +8,6 @@ from sessions import session_of
 
 from app.document import FrameRange
 from app.editor.actions import playback
-from app.editor.actions.tracking.correction_jobs import is_track_drag_pending
 
 
 @pytest.fixture
@@ -26,13 +25,3 @@ def test_playhead_goes_to_both_ends_of_what_plays(session):
     assert session.project.timeline.playhead.frame == 10
     playback.go_to_end(session)
     assert session.project.timeline.playhead.frame == 30
-
-
-def test_hand_on_a_track_comes_first_only_while_it_drags(session, monkeypatch):
-    project = session.project
-    monkeypatch.setattr(type(project), "selected_track", 0)
-    assert not is_track_drag_pending(session, project)
-    session.tools.active_tool = object()
-    assert is_track_drag_pending(session, project)
-    monkeypatch.setattr(type(project), "selected_track", None)
-    assert not is_track_drag_pending(session, project)

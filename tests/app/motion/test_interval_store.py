@@ -15,7 +15,7 @@ from app.document.channels.tangent_mode import TangentMode
 from app.document.commands.keys import (
     channel_commands,
 )
-from app.document.history import History
+from app.document.history.undo_history import History
 from app.document.queries.channel_values.channel_keys import pose_channel
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange

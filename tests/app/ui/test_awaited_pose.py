@@ -90,7 +90,7 @@ def test_a_handle_moves_as_far_as_the_pointer_did_meanwhile(window, bent, come):
         come(settles=False)
         while bent.visible_drag.solver is None:
             robot.yield_(1)
-        assert bent.visible_drag.is_held
+        assert bent.history.is_held
         robot.mouse_up(0)
 
     window.run(play)

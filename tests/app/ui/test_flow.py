@@ -157,8 +157,8 @@ def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window,
     drag_handles(session, {1: Target(position=handle_places(bar)[1] + 150j)}, gesture="hand")
     window.settle()
     posed = bar.document
-    assert bar.visible_drag.is_held
-    assert bar.history.document is not posed, "it becomes a step when the hand lets go"
+    assert bar.history.is_held
+    assert bar.history.committed is not posed, "it becomes a step when the hand lets go"
     playback.seek(session, 24)
     window.settle()
     assert bar.drag is None

@@ -114,7 +114,7 @@ def test_drag_goes_on_after_a_nudge(window, loose):
     loose.selection.handles = frozenset({0})
     nudge_handles(window.session, 1 + 0j)
     window.settle()
-    assert loose.drag.is_held
+    assert loose.history.is_held
     hand.move(-70j)
     hand.let_go()
     assert abs(hand.way + 70j) < NEAR
@@ -171,8 +171,6 @@ def test_key_moves_with_the_pose_at_rest_of_a_drag(window, loose):
     assert not drag.is_at_rest
     held = KeyDrag(
         start=BENT,
-        before=loose.document,
-        after=loose.document,
         keys=keys,
         channel=pose_channel(0),
         pressed=BENT,
@@ -225,7 +223,8 @@ def test_key_of_a_drag_that_fails_is_selected_no_more(window, loose, fails):
 
 
 def test_undo_of_a_drag_that_fails_takes_back_no_other_step(window, loose, fails):
-    hand, before = hold(window, loose), loose.history.document
+    before = loose.document
+    hand = hold(window, loose)
     with window.session.jobs.held(POSING):
         hand.move(-70j)
         release_drag(window.session)

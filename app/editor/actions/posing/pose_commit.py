@@ -13,6 +13,7 @@ POSING = JobKind(_("Posing"), _("This pose could not be found"), "hand")
 def drop_drag(session: Session, project: Project, drag: DragSession) -> None:
     """End a drag without a step; a result that is still computed is dropped."""
     _end_drag(session, project, drag)
+    project.history.revert(drag.gesture)
     # The key that only the drag displayed may be selected.
     project.selection.keep_existing(project.document)
 
@@ -20,19 +21,28 @@ def drop_drag(session: Session, project: Project, drag: DragSession) -> None:
 def _end_drag(session: Session, project: Project, drag: DragSession) -> None:
     if drag in project.pending.changes:
         project.pending.remove(drag)
-        project.history.unfinished = None
         session.jobs.drop(POSING)
 
 
 def commit_drag(session: Session, project: Project, drag: DragSession, pose: Pose) -> None:
-    """End a drag, and write its final pose to the document as one undo step."""
+    """End a drag with its final pose."""
     _end_drag(session, project, drag)
+    preview_pose(project, drag, pose)
+    project.history.settle()
+
+
+def preview_pose(project: Project, drag: DragSession, pose: Pose) -> None:
+    """Display the pose of a drag: as a key, or as the unkeyed pose without auto-key."""
+    if drag.preview is pose:
+        return
     history, drag.preview = project.history, pose
     if not drag.is_keyed:
         unkeyed = PreviewPose(layer=drag.layer, frame=drag.frame, pose=pose)
         history.set_preview_pose(unkeyed, gesture=drag.gesture)
         return
-    history.do(drag.command, gesture=drag.gesture)
+    command = key_commands.insert_pose(drag.layer, drag.frame, pose, drag.easing)
+    label = _("Move") if drag.translations else _("Pose")
+    history.do(Command(label, command.change), gesture=drag.gesture)
     left = history.preview_pose
     if left is not None and (left.layer, left.frame) == (drag.layer, drag.frame):
         history.set_preview_pose(None, gesture=drag.gesture)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from app.document import Pose, Target, UnfinishedChange, keyed_pose_at, segment_time_at
+from app.document import Pose, Target, keyed_pose_at, segment_time_at
 from app.editor.actions import playback
 from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
 from app.editor.actions.posing.pose_commit import POSING, drop_drag
@@ -53,20 +53,20 @@ def _change(
     change: Callable[[DragSession, object], None],
 ) -> None:
     """Change the drag of the present pose, or begin one."""
-    drag = project.visible_drag
+    drag, history = project.visible_drag, project.history
     if drag is None and project.drag is not None:
-        project.pending.interrupt(project.drag)
+        history.interrupt()
     is_fixed = project.layer_runtime.shown is None or project.layer.still
-    if is_fixed or gesture in project.pending.ended_gestures:
+    if is_fixed or history.has_ended(gesture):
         return
-    if drag is None or not drag.is_held:
+    if drag is None or not history.is_held:
         drag = _begin(session, project, gesture)
     change(drag, gesture or object())
-    drag.is_held |= gesture is not None
     if drag is not project.drag:
+        history.begin(drag.gesture, _("Pose"), partial(finish_drag, session, project))
         project.pending.add(drag)
-        finish = partial(finish_drag, session, project)
-        project.history.unfinished = UnfinishedChange(drag.applied_to, finish)
+    if gesture is not None:
+        history.hold(drag.gesture, gesture)
     step_pose_solver(session, project)
 
 
@@ -74,13 +74,13 @@ def _change(
 def release_drag(session: Session, project: Project) -> None:  # noqa: ARG001 - of an action
     """End the drag; the solver goes on until the pose rests."""
     if project.drag is not None:
-        project.drag.is_held = False
+        project.history.release(project.drag.gesture)
 
 
 @with_project
 def release_drag_forced(session: Session, project: Project) -> None:
     """End the drag, and keep its targets even if the handles cannot reach them."""
-    if project.drag is not None and project.drag.is_held:
+    if project.drag is not None and project.history.is_held:
         project.drag.force_targets()
     release_drag(session)
 
@@ -155,10 +155,9 @@ def revert_drag(session: Session, project: Project, gesture: object) -> None:
     drag = project.drag
     if drag is not None and gesture in drag.target_changes:
         drag.revert(gesture)
-        drag.is_held = False
+        project.history.release(drag.gesture)
         if gesture is drag.gesture or not drag.target_changes:
             drop_drag(session, project, drag)
-            project.history.revert(drag.gesture)
 
 
 def _begin(session: Session, project: Project, gesture: object | None) -> DragSession:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from app.document import Clip, Pose, Target, keyed_pose_at, segment_time_at
 from app.editor.actions import playback
-from app.editor.actions.posing.pose_commit import POSING, commit_drag, drop_drag
+from app.editor.actions.posing.pose_commit import POSING, commit_drag, drop_drag, preview_pose
 from app.editor.actions.posing.reach_limit import clamp_unreachable_targets
 from app.editor.error_reports import report_failure, run_job
 from app.editor.project import Project
@@ -39,10 +39,10 @@ def update_drag(session: Session, project: Project) -> None:
         return
     is_here = is_drag_at_playhead(session, project, drag)
     if not is_here:
-        project.pending.interrupt(drag)
-    if is_here or drag.preview is None:
-        drag.preview = drag.newest
-    if not drag.is_held and _is_final(project, drag) and drag.newest is not None:
+        project.history.interrupt()
+    if drag.newest is not None and (is_here or drag.preview is None):
+        preview_pose(project, drag, drag.newest)
+    if not project.history.is_held and _is_final(project, drag) and drag.newest is not None:
         commit_drag(session, project, drag, drag.newest)
     else:
         step_pose_solver(session, project)
@@ -58,7 +58,7 @@ def finish_drag(session: Session, project: Project) -> None:
     if drag is None:
         return
     session.jobs.drop(POSING)
-    project.pending.interrupt(drag)
+    project.history.interrupt()
     try:
         while not _is_final(project, drag):
             pace = _pace(drag)._replace(seconds=inf)
@@ -85,7 +85,7 @@ def step_pose_solver(session: Session, project: Project) -> None:
         return
     # A drag at another frame goes on once the shown frame is final.
     if not (
-        drag.is_held
+        project.history.is_held
         or is_drag_at_playhead(session, project, drag)
         or is_display_final(session, project)
     ):

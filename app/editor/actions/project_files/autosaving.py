@@ -4,7 +4,7 @@ from functools import partial
 
 from app.document import Document
 from app.editor import pending_changes
-from app.editor.actions.posing.pose_commit import key_pose_command
+from app.editor.actions.posing.pose_commit import key_pose_command, preview_pose
 from app.editor.actions.project_files.saving import has_unsaved_changes
 from app.editor.error_reports import report_first_failure, run_job
 from app.editor.project import Project
@@ -63,7 +63,7 @@ def autosave(session: Session, project: Project) -> None:
             session.settings.autosave.remove()
         file.note_unchanged()
         return
-    if file.autosaved == (project.document, project.preview_pose):
+    if file.autosaved == (project.document, project.history.preview_pose):
         file.note_unchanged()
         return
     now = session.clock()
@@ -93,8 +93,8 @@ def autosave_now(session: Session, project: Project) -> None:
         If the autosave cannot be written.
     """
     if project.drag is not None and project.drag.newest is not None:
-        project.drag.preview = project.drag.newest
-    kept = project.document, project.preview_pose
+        preview_pose(project, project.drag, project.drag.newest)
+    kept = project.document, project.history.preview_pose
     is_kept = project.file.autosaved == kept and AUTOSAVING not in session.jobs.kinds
     if is_kept or not has_unsaved_changes(project):
         return
@@ -106,7 +106,7 @@ def autosave_now(session: Session, project: Project) -> None:
 
 def _all_keyed(session: Session, project: Project) -> Document:
     """Return the document with the unkeyed pose as a key, since files store keys only."""
-    unkeyed = project.preview_pose
+    unkeyed = project.history.preview_pose
     if unkeyed is None:
         return project.document
     return key_pose_command(session, project, unkeyed)(project.document)
@@ -118,7 +118,7 @@ def _begin_autosave(session: Session, project: Project, now: float) -> None:
         project.file.origin,
         project.file.autosaved,
     )
-    kept = project.document, project.preview_pose
+    kept = project.document, project.history.preview_pose
     project.file.note_autosave(kept, now)
 
     def done(_: None) -> None:

@@ -156,7 +156,7 @@ def _prepare(
 ) -> None:
     """Prepare a checked export on a worker, and then start it."""
     document, format_ = project.document, EXPORT_FORMATS[request.settings.format]
-    unkeyed = project.preview_pose
+    unkeyed = project.history.preview_pose
     if format_.is_still and unkeyed is not None and unkeyed.layer == project.selection.active:
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:

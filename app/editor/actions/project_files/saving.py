@@ -203,7 +203,7 @@ def _asks_about(waiting: Action, then: Action) -> bool:
 @with_project
 def ask_unsaved_now(session: Session, project: Project, then: Action) -> None:
     """Run an action that closes the project, but ask first if it has changes now."""
-    unkeyed = project.preview_pose
+    unkeyed = project.history.preview_pose
     is_settled = pending_changes.is_document_idle(project, after_saves=True)
     if is_settled and not has_unsaved_changes(project):
         then.apply(session)
@@ -232,7 +232,7 @@ def ask_unsaved_now(session: Session, project: Project, then: Action) -> None:
 @with_project
 def key_and_save(session: Session, project: Project, then: Action) -> None:
     """Key the unkeyed pose, and save the project."""
-    unkeyed = project.preview_pose
+    unkeyed = project.history.preview_pose
     if unkeyed is not None:
         insert_key_at(session, unkeyed.layer, unkeyed.frame)
     save_then(session, then)
@@ -266,7 +266,7 @@ def close_window(session: Session) -> None:
 def has_unsaved_changes(project: Project) -> bool:
     """Return whether there are changes that no file has; an unkeyed pose is a change."""
     is_saved = project.history.is_saved and project.drag is None
-    return not is_saved or project.preview_pose is not None
+    return not is_saved or project.history.preview_pose is not None
 
 
 @with_project

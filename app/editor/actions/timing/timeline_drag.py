@@ -22,7 +22,6 @@ from app.document import (
 )
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action
-from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.actions.timing.keys import edit_timing
 from app.editor.parts.timeline import (
     CycleDrag,
@@ -71,13 +70,12 @@ def scroll_rows(_: Session, project: Project, to: float) -> None:
 
 @with_project
 def begin_timeline_drag(
-    session: Session, project: Project, gesture: TimeGesture, strip: TimeRangeView
+    _: Session, project: Project, gesture: TimeGesture, strip: TimeRangeView
 ) -> None:
     """Begin a gesture; the shown range of time is fixed until it ends."""
-    if isinstance(gesture, TimeDrag) and project.drag is not None:
+    if isinstance(gesture, TimeDrag):
         # The keys move with poses at rest.
-        finish_drag(session, project)
-        gesture = replace(gesture, before=project.document, after=project.document)
+        project.history.commit()
     project.timeline.begin_gesture(gesture, strip)
 
 
@@ -97,6 +95,8 @@ def move_timeline_drag(
 
 @with_project
 def end_timeline_drag(_: Session, project: Project) -> None:
+    if isinstance(project.timeline.gesture, TimeDrag):
+        project.history.release(project.timeline.gesture.gesture)
     project.timeline.end_gesture()
 
 
@@ -106,8 +106,8 @@ def cancel_timeline_drag(session: Session, project: Project) -> None:
     gesture = project.timeline.gesture
     if isinstance(gesture, KeyBox):
         editing.select_channel_keys(session, gesture.keeps)
-    elif isinstance(gesture, TimeDrag) and project.document is gesture.after:
-        _become(session, gesture.before, gesture.before, _("Drag"))
+    elif isinstance(gesture, TimeDrag) and project.history.is_open(gesture.gesture):
+        editing.cancel_change(session)
         if isinstance(gesture, KeyDrag):
             editing.select_channel_keys(session, gesture.keys)
     end_timeline_drag(session)
@@ -177,40 +177,41 @@ def drag_offset(document: Document, keys: KeysByChannel, wanted: int, *, copies:
 
 def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> None:
     """Move the dragged item to the pointer's frame, unless another edit came meanwhile."""
-    moved = _moved(drag, frame)
+    before = project.history.committed
+    moved = _moved(before, drag, frame)
     if moved is None:
         return
-    if project.document is not drag.after:
+    if project.history.has_ended(drag.gesture):
         end_timeline_drag(session)
         return
     drag, command = moved
     try:
-        document = command(drag.before)
+        document = command(before)
     except LissomError:
         # Keys before a cycle stay where they are.
         return
-    _become(session, drag.before, document, command.label)
+    edit_timing(session, Command(command.label, lambda _: document), gesture=drag.gesture)
     if isinstance(drag, KeyDrag):
         by = drag.by
         chosen = {
             channel: frozenset(key + by for key in frames) for channel, frames in drag.keys.items()
         }
         editing.select_channel_keys(session, chosen)
-    project.timeline.move_gesture(replace(drag, after=project.document))
+    project.timeline.move_gesture(drag)
 
 
-def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
+def _moved(before: Document, drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
     """Return the drag, moved as near to a frame as possible, and its command.
 
     The command is for the document before the drag. None if nothing moves.
     """
     match drag:
         case EdgeDrag():
-            return drag, _trim(drag, frame)
+            return drag, _trim(before, drag, frame)
         case CycleDrag():
-            return drag, _end_cycle(drag, round(frame))
+            return drag, _end_cycle(before, drag, round(frame))
         case KeyDrag(keys=keys, copies=copies):
-            by = drag_offset(drag.before, keys, round(frame - drag.start), copies=copies)
+            by = drag_offset(before, keys, round(frame - drag.start), copies=copies)
             change = channel_commands.copy_keys if copies else channel_commands.move_keys
             command = change(keys, by)
             if not by:
@@ -219,22 +220,21 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
     raise AssertionError("unreachable: there are no other drags")
 
 
-def _end_cycle(drag: CycleDrag, frame: int) -> Command:
+def _end_cycle(before: Document, drag: CycleDrag, frame: int) -> Command:
     """Return the command that puts the dragged end of a cycle as near to a frame as possible."""
-    layer = drag.before.layer(drag.layer)
+    layer = before.layer(drag.layer)
     cycle = cycle_commands.cycle_starting_at(layer, drag.first)
     last, until = cycle.last, cycle.until
     if drag.is_stretch:
-        cycle = cycle_commands.with_cycle_end(layer, cycle, min(frame, drag.before.frames.last))
+        cycle = cycle_commands.with_cycle_end(layer, cycle, min(frame, before.frames.last))
         last, until = cycle.last, cycle.until
     else:
-        until = cycle_commands.nearest_cycle_end(layer, cycle, frame, drag.before.frames.last)
+        until = cycle_commands.nearest_cycle_end(layer, cycle, frame, before.frames.last)
     return cycle_commands.set_cycle(drag.layer, drag.first, last, until)
 
 
-def _trim(drag: EdgeDrag, pointed: float) -> Command:
+def _trim(document: Document, drag: EdgeDrag, pointed: float) -> Command:
     """Return the command that puts the dragged end at the pointer."""
-    document = drag.before
     frames, played = document.frames, document.played_frames
     frame = frames.clamp(round(pointed))
     match drag.edge:
@@ -251,11 +251,3 @@ def _trim(drag: EdgeDrag, pointed: float) -> Command:
             by = min(max(by, frames.first - played.first), frames.last - played.last)
             preview = FrameRange(played.first + by, played.last + by)
     return scene_commands.set_preview(None if preview == frames else preview)
-
-
-def _become(session: Session, before: Document, document: Document, label: str) -> None:
-    """Set the document, within the gesture's single undo step.
-
-    The document before the gesture identifies it: the dragged item may vanish meanwhile.
-    """
-    edit_timing(session, Command(label, lambda _: document), gesture=before)

@@ -21,14 +21,6 @@ FINDING_BASE_FRAMES = JobKind(_("Places on tracks"), COMPLAINT, "hand")
 Work = Callable[[], CorrectionUpdate]
 
 
-def is_track_drag_pending(session: Session, project: Project) -> bool:
-    """Return whether a handle is dragged on its track; only the shown frame is computed then."""
-    is_recorded = project.timeline.recording is not None and not project.timeline.recording.is_over
-    return is_recorded or (
-        session.tools.active_tool is not None and project.selected_track is not None
-    )
-
-
 def next_correction_jobs(session: Session, project: Project) -> Iterator[Job]:
     """Yield the job for corrections of some frames, nearest to the playhead first."""
     frame = playback.current_frame(session, project)
@@ -43,8 +35,7 @@ def next_correction_jobs(session: Session, project: Project) -> Iterator[Job]:
 def correction_jobs_for_shown_frame(session: Session, project: Project) -> Iterator[Job]:
     """Yield jobs for the shown frame's correction, and for base motions that drags need."""
     # A visible pose drag comes first.
-    is_posed = session.settings.prepares_ahead and project.visible_drag is not None
-    if not is_posed or is_track_drag_pending(session, project):
+    if not (session.settings.prepares_ahead and project.visible_drag is not None):
         yield from _follow(session, project)
         yield from _ground(session, project)
 
@@ -56,10 +47,7 @@ def _follow(session: Session, project: Project) -> Iterator[Job]:
     ):
         # During playback the correction would come too late.
         return
-    frame, is_urgent = (
-        playback.current_frame(session, project),
-        is_track_drag_pending(session, project),
-    )
+    frame, is_urgent = playback.current_frame(session, project), project.history.is_unfinished
     for clip, runtime, corrected in _corrected(project):
         work = corrected.missing_here(project.document, frame, project.samplers)
         # The next pose drag must not wait until all frames are prepared.

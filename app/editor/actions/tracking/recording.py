@@ -26,8 +26,8 @@ from app.texts import _
 from engine.geometry import RigidMotion
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
-# Largest distance of the fitted motion from the recorded one, in pixels of the screen, since
-# tremor is in screen pixels: without smoothing and with full smoothing.
+# Largest distance of the fitted motion from the recorded one, in pixels of the screen like tremor:
+# without smoothing and with full smoothing.
 CLOSEST, SMOOTHEST = 0.3, 12.0
 SMOOTHING = 0.5  # initial value
 NO_RECORDING = _("The recording could not be keyed")
@@ -77,7 +77,6 @@ def start_recording(
         layer=project.selection.active,
         handle=handle if track is None else track.handles[0],
         gesture=gesture,
-        before=track,
         playhead=running,
         last=running.frame + frames.last - frames.first if goes_round else played.last,
         speed=standing.speed,
@@ -85,6 +84,7 @@ def start_recording(
         scale=project.view_on(session.display.screen).scale,
         smoothing=SMOOTHING,
     )
+    project.history.hold(gesture)
     project.timeline.start_recording(take)
 
 
@@ -97,16 +97,14 @@ def drag_recorded_handle(_: Session, project: Project, place: complex) -> None:
 
 @with_project
 def stop_recording(session: Session, project: Project, *, has_moved: bool = True) -> None:
-    """End a recording; the playhead goes back to its frame at the start.
-
-    A recording without a pointer move is kept if the body moved under the pointer.
-    """
+    """End a recording; the playhead goes back. Without a move, it is kept if the body moved."""
     take = project.timeline.recording
     if take is None or take.is_over:
         return
     if session.tools.active_tool is take.gesture:
         session.tools.end()
     take.is_over, take.has_moved = True, has_moved
+    project.history.release(take.gesture)
     project.timeline.stop_recording()
     if take.layer == project.selection.active:
         project.selection.select_track(project.layer, take.handle)
@@ -148,7 +146,7 @@ def retry_recording(session: Session) -> None:
 def smooth_recording(_: Session, project: Project, smoothing: float) -> None:
     """Smooth the recorded motion, from 0 to 1."""
     take = project.timeline.recording
-    if take is not None and take.after is not None:
+    if take is not None and take.is_written and project.history.is_open(take.gesture):
         take.smoothing = smoothing
         _write(project, take)
 
@@ -164,14 +162,15 @@ def update_track_drags(session: Session, project: Project) -> None:
     if take is None:
         return
     is_here = take.layer == active and take.handle in [h.id for h in project.layer.handles]
-    if not is_here or (take.after is not None and take.after is not project.document):
-        # A later edit or undo replaces the recording's last result.
+    is_cut = take.is_written and not project.history.is_open(take.gesture)
+    if not is_here or is_cut or project.history.has_ended(take.gesture):
+        # A later edit or undo ends the recording.
         accept_recording(session)
     elif not take.is_over:
         _record(session, project, take)
-    elif take.after is None and _is_click(project, take):
+    elif not take.is_written and _is_click(project, take):
         discard_recording(session)
-    elif take.after is None:
+    elif not take.is_written:
         try:
             _write(project, take)
         except LissomError as error:
@@ -219,7 +218,8 @@ def _is_click(project: Project, take: Recording) -> bool:
 
 def _write(project: Project, take: Recording) -> None:
     """Write the recorded motion to the track, once its base motion is known."""
-    clip, before = project.clip, take.before
+    clip = project.clip
+    before = project.history.committed.layer(take.layer).track_of(take.handle)
     values = _values(project, take)
     if values is None:
         return
@@ -244,7 +244,7 @@ def _write(project: Project, take: Recording) -> None:
     row = tuple(keys[frame] for frame in sorted(keys))
     command = track_commands.put_track(take.layer, replace(fresh, keys=row))
     project.history.do(replace(command, label=_("Record drag")), gesture=take.gesture)
-    take.after = project.document
+    take.is_written = True
 
 
 def _fitted(
@@ -263,7 +263,8 @@ def _fitted(
 
 def _values(project: Project, take: Recording) -> list[complex] | None:
     """Convert the samples to values of track keys; None until all base motions are known."""
-    if take.before is not None and take.before.is_scene_space:
+    before = project.history.committed.layer(take.layer).track_of(take.handle)
+    if before is not None and before.is_scene_space:
         return [sample.place for sample in take.samples]
     index, values = handle_index(project, take.handle), []
     for time, place in take.samples:

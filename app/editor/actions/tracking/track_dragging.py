@@ -38,6 +38,8 @@ def drag_track_handle(
     Edits of one gesture are one undo step. `handle` is the first handle of the track. `place` is in
     the layer's own space.
     """
+    if not project.history.hold(gesture):
+        return
     for held in project.track_drags:
         if held.gesture is gesture:
             held.place = place
@@ -60,7 +62,7 @@ def rotate_track_handle(
     """
     held = next((each for each in project.track_drags if each.gesture is gesture), None)
     track, shown = project.layer.track_of(handle), project.layer_runtime.shown
-    if track is None or shown is None:
+    if track is None or shown is None or not project.history.hold(gesture):
         return
     if not track.keys_rotation:
         command = track_commands.set_turning(project.selection.active, handle, turns=True)
@@ -83,19 +85,14 @@ def rotate_track_handle(
     project.pending.add(begun)
 
 
-def cancel_track_drag(project: Project, gesture: object) -> None:
-    """Drop a gesture's track targets that are not yet keyed."""
-    for held in project.track_drags:
-        if held.gesture is gesture:
-            project.pending.remove(held)
-
-
 def commit_track_drags(session: Session, project: Project) -> None:
     """Key the targets of track drags whose base motion is known; once a frame."""
     for held in project.track_drags:
-        is_there = held.layer == project.selection.active and held.handle in [
-            handle.id for handle in project.layer.handles
-        ]
+        is_there = (
+            project.history.is_open(held.gesture)
+            and held.layer == project.selection.active
+            and held.handle in [handle.id for handle in project.layer.handles]
+        )
         try:
             is_over = not is_there or commit_track_key(session, project, held)
         except LissomError as error:

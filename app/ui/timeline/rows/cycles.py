@@ -131,7 +131,5 @@ def _end_of_cycle(
         first=cycle.first,
         is_stretch=is_stretch,
         start=bands.pointed,
-        before=bands.project.document,
-        after=bands.project.document,
     )
     return [do(timeline_drag.begin_timeline_drag, drag, bands.time_view)]

@@ -89,8 +89,7 @@ def _edge(
 
 
 def begin_edge_drag(bands: TimelineLayout, edge: Edge) -> Action:
-    document = bands.project.document
-    drag = EdgeDrag(edge=edge, start=bands.pointed, before=document, after=document)
+    drag = EdgeDrag(edge=edge, start=bands.pointed)
     return do(timeline_drag.begin_timeline_drag, drag, bands.time_view)
 
 

@@ -53,7 +53,7 @@ def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Act
     draw_list, em = imgui.get_window_draw_list(), look.em
     name = project.layer.handle(take.handle).name
     track = project.layer.track_of(take.handle)
-    count = 0 if track is None or take.after is None else len(track.keys)
+    count = 0 if track is None or not take.is_written else len(track.keys)
     text = ngettext("{handle}: {count} key", "{handle}: {count} keys", count)
     text = text.format(handle=name, count=count) if count else f"{name}…"
     imgui.set_cursor_screen_pos(corner + ImVec2(1.5 * em, 1.5 * em))
