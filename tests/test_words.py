@@ -28,7 +28,6 @@ REPLACED_LONG = {
     "app/motion/inbetween_cache.py",
     "app/motion/inbetweens/pose_sampler.py",
     "app/solving/drag_solver.py",
-    "app/solving/script_solver.py",
 }
 # Tables are looked things up in, and read by nobody from end to end.
 TABLES = {

@@ -36,12 +36,19 @@ from app.document.channels.kinds import (
     OPACITY as OPACITY,
     PARENT as PARENT,
     POSE as POSE,
+    SLIDER as SLIDER,
     SWITCH as SWITCH,
     TINT as TINT,
     TRACK as TRACK,
     TRANSFORM as TRANSFORM,
     VISIBILITY as VISIBILITY,
     VOLUME as VOLUME,
+)
+from app.document.channels.sliders import (
+    BEYOND as BEYOND,
+    Slider as Slider,
+    SliderPose as SliderPose,
+    format_slider_value as format_slider_value,
 )
 from app.document.channels.sounds import (
     SHORTEST as SHORTEST,
@@ -64,6 +71,7 @@ from app.document.commands import (
     pose_commands as pose_commands,
     scene_commands as scene_commands,
     shape_commands as shape_commands,
+    slider_commands as slider_commands,
     sound_commands as sound_commands,
     stiffness_commands as stiffness_commands,
 )
@@ -166,6 +174,11 @@ from app.document.queries.channel_values.repeats import (
     repeating_cycle as repeating_cycle,
     with_repeats as with_repeats,
 )
+from app.document.queries.channel_values.sliders_at import (
+    slider_poses as slider_poses,
+    slider_value_at as slider_value_at,
+    slider_weights_at as slider_weights_at,
+)
 from app.document.queries.channel_values.tracks_at import (
     TrackSample as TrackSample,
     spring_root as spring_root,
@@ -185,6 +198,7 @@ from app.document.queries.channel_values.values_at import (
 )
 from app.document.queries.clips import (
     Clip as Clip,
+    SliderChannel as SliderChannel,
     clip_of as clip_of,
     motion_source as motion_source,
 )

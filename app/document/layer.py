@@ -15,6 +15,7 @@ from app.document.channels.cycles import Cycle, require_no_overlap, require_repe
 from app.document.channels.key import Key
 from app.document.channels.kind import ChannelKeys, ChannelKind, require_order
 from app.document.channels.kinds import DRAW_ORDER, LAYER_KINDS, PARENT, POSE
+from app.document.channels.sliders import Slider
 from app.document.channels.springs import Spring
 from app.document.channels.tracks import Track
 from app.document.checks import (
@@ -102,6 +103,7 @@ class Layer:
     variant: Variant = Variant.METRIC  # accepts the name of a variant
     bounds: Bounds = NATURAL.bounds  # limits of new poses
     library: tuple[LibraryPose, ...] = ()  # saved poses
+    sliders: tuple[Slider, ...] = ()  # of poses of the library
     # Vertical axis for flipped poses, in pixels from the picture's left edge. None takes the mean
     # of the paired handles, or the middle of the shape.
     mirror: float | None = None
@@ -146,13 +148,20 @@ class Layer:
         )
         kept = {name: tuple(keys) for name, keys in self.channels.items() if keys}
         object.__setattr__(self, "channels", MappingProxyType(kept))
-        handles = {handle.id for handle in self.handles}
+        handles, sliders = {each.id for each in self.handles}, {each.name for each in self.sliders}
         for (name, part), keys in self.channels.items():
-            LAYER_KINDS[name].require(keys, self.name)
+            kind = LAYER_KINDS[name]
+            kind.require(keys, self.name)
             require(
-                part is None or part in handles,
+                not kind.of_sliders or part in sliders,
+                N_("{layer!r} has keys of the slider {part!r}, which does not exist."),
+                layer=self.name,
+                part=part,
+            )
+            require(
+                kind.of_sliders or part is None or part in handles,
                 N_("{channel} of {layer!r} belongs to the handle {part}, which does not exist."),
-                channel=LAYER_KINDS[name].label,
+                channel=kind.label,
                 layer=self.name,
                 part=part,
             )
@@ -287,6 +296,12 @@ class Layer:
             if kept.name == name:
                 return kept
         raise LissomError(_("There is no pose {name!r} in the library.").format(name=name))
+
+    def slider(self, name: str) -> Slider:
+        for slider in self.sliders:
+            if slider.name == name:
+                return slider
+        raise LissomError(_("There is no slider {name!r}.").format(name=name))
 
     def handle(self, identity: int) -> Handle:
         for handle in self.handles:
@@ -449,6 +464,19 @@ class Layer:
         )
         for kept in self.library:
             self._check_pose(kept.pose, _("The pose {name!r}").format(name=kept.name))
+        require_distinct(
+            (each.name for each in self.sliders),
+            N_("Two sliders have the name {value!r}; rename one of them."),
+        )
+        names = {kept.name for kept in self.library} | {None}
+        for slider in self.sliders:
+            for each in slider.poses:
+                require(
+                    each.pose in names,
+                    N_("The slider {slider!r} has the pose {pose!r}, which is not in the library."),
+                    slider=slider.name,
+                    pose=each.pose,
+                )
 
     def _check_secondary_motion(self) -> None:
         known = {handle.id for handle in self.handles}

@@ -241,9 +241,7 @@ class Document:
 
     def loop_frame(self, frame: float) -> float:
         """Return the frame within the range that a loop shows; without a loop, the same."""
-        first, period = self.frames.first, self.frames.last - self.frames.first
-        is_beyond = self.loop and period and frame not in self.frames
-        return first + (frame - first) % period if is_beyond else frame
+        return self.frames.wrap(frame) if self.loop else frame
 
     def _check_layers(self) -> None:
         require(len(self.layers) > 0, N_("A document must have at least one layer."))

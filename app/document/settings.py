@@ -111,6 +111,13 @@ class FrameRange:
         """Return the nearest frame in the range."""
         return min(max(frame, self.first), self.last)
 
+    def wrap(self, frame: float) -> float:
+        """Return the frame of the range that a loop shows in place of a frame beyond it."""
+        period = self.last - self.first
+        if not period or frame in self:
+            return frame
+        return self.first + (frame - self.first) % period
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Marker(BaseKey):

@@ -1,17 +1,17 @@
-"""The frames of a clip at which tracks and springs act; repeated frames are listed once."""
+"""The frames at which sliders, tracks and springs act; repeated frames are listed once."""
 
 import numpy as np
 
-from app.document import Clip, Track, segment_layout, track_cycle
+from app.document import Clip, Track, segment_layout, slider_weights_at, track_cycle
 from app.rigging import FADE_FRAMES, frames_to_settle
 from engine.arrays import Floats, Indices
 
 
 def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Indices]:
-    """Return the frames (n,) at which tracks or springs act, and the count of each (n,).
+    """Return the frames (n,) at which sliders, tracks or springs act, and the count of each (n,).
 
-    Frames with equal poses and tracks are listed once, by their first frame. Springs, and tracks of
-    a layer with a parent, continue across repeats: there each frame is listed.
+    Frames with equal poses, sliders and tracks are listed once, by their first frame. Springs, and
+    tracks of a layer with a parent, continue across repeats: there each frame is listed.
     """
     layer = clip.layer
     frames = np.arange(clip.frames.first, clip.frames.last + 1)
@@ -26,16 +26,24 @@ def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Ind
         acts |= (clip.keys[0].frame <= frames) & (frames <= rests)
     for track in tracks:
         acts |= np.isfinite(_times(track, clip, frames))
-    frames = frames[acts]
+    slid = [slider_weights_at(clip, frame) for frame in frames.tolist()]
+    acts |= [any(weights) for weights in slid]
+    frames, slid = frames[acts], [slid[place] for place in np.flatnonzero(acts)]
     if springs or is_carried:
         return frames, np.ones_like(frames)
     _, alike = np.unique(_posed(clip, frames), return_inverse=True)
-    for track in tracks:
-        _, own = np.unique(_times(track, clip, frames), return_inverse=True)
+    for values in [_times(track, clip, frames) for track in tracks] + [_numbered(slid)]:
+        _, own = np.unique(values, return_inverse=True)
         _, alike = np.unique(alike * (len(frames) + 1) + own, return_inverse=True)
     _, first, counts = np.unique(alike, return_index=True, return_counts=True)
     order = np.argsort(first)
     return frames[first[order]], counts[order]
+
+
+def _numbered(rows: list[tuple[float, ...]]) -> Floats:
+    """Return a number for each row (n,), the same for equal rows."""
+    numbers = {row: float(number) for number, row in enumerate(dict.fromkeys(rows))}
+    return np.array([numbers[row] for row in rows])
 
 
 def _times(track: Track, clip: Clip, frames: Indices) -> Floats:

@@ -46,6 +46,7 @@ def _corrected_block(report: Report) -> dict[str, Any] | None:
         "points": corrected.points,
         "looked_at": corrected.looked_at,
         "left_out": corrected.left_out,
+        "sliders": {"frames": corrected.slid, "curbed": corrected.curbed},
         **_named(corrected.reached),
         "between": _named(corrected.between),
         "excess": list(_named(corrected.excess).values()),

@@ -1,11 +1,13 @@
 """The distortion of an animation as a table."""
 
 from collections.abc import Mapping, Sequence
+from math import expm1
 
 from app.document import Cycle
 from app.errors import shortened
 from app.reports.certification import Report, SegmentReport, Verdict
 from app.reports.certification_json import NAMES, list_numbers
+from app.reports.corrected_frames import CorrectedReport
 from app.texts import _, ngettext
 
 WORDS = {
@@ -60,7 +62,13 @@ def _places(report: Report) -> list[str]:
     is_over = report.verdict is Verdict.OVER
     found = [_key(frame) for frame, own in report.keys if is_over and not own.is_certified]
     found += [_frames(each) for each in report.segments if each.verdict is report.verdict]
-    return found + [_("tracks")] * (report.corrected_verdict is report.verdict)
+    if report.corrected is not None and report.corrected_verdict is report.verdict:
+        found.append(_name(report.corrected))
+    return found
+
+
+def _name(corrected: CorrectedReport) -> str:
+    return _("sliders") if corrected.slid else _("tracks")
 
 
 def _key(frame: int) -> str:
@@ -121,19 +129,26 @@ def _corrected_lines(report: Report) -> list[str]:
         return []
     reached = zip(list_numbers(corrected.reached), ("+", "+", "-"), corrected.excess, strict=True)
     cells = [f"{value:.4f} ({sign}{by:.4f})" for value, sign, by in reached]
-    lines = [_line(_("tracks"), cells, WORDS[report.corrected_verdict])]
+    lines = [_line(_name(corrected), cells, WORDS[report.corrected_verdict])]
     lines.append(
         _(
-            "Tracks and springs move handles in {frames} frames; {proven} of them are proven. "
+            "Sliders, tracks and springs change {frames} frames; {proven} of them are proven. "
             "Halfway between two frames the drawing is measured, at {points:,} points of the "
             "outline."
         ).format(frames=corrected.frames, proven=corrected.proven, points=corrected.points)
     )
+    if corrected.slid:
+        lines.append(
+            _(
+                "Sliders keep the layer's limits by construction. Their frames are measured, not "
+                "proven. The limits scale the blend of their poses by up to {curbed:.0%} in places."
+            ).format(curbed=expm1(corrected.curbed))
+        )
     if corrected.left_out:
         lines.append(
             _(
-                "Tracks and springs act in {count:,} frames; a repeat counts once. {examined:,} "
-                "of them were examined, at equal steps."
+                "They act in {count:,} frames; a repeat counts once. {examined:,} of them were "
+                "examined, at equal steps."
             ).format(count=corrected.looked_at + corrected.left_out, examined=corrected.looked_at)
         )
     for short in corrected.short:

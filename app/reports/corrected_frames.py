@@ -1,4 +1,4 @@
-"""Frames that tracks and springs change: their distortion and their target errors."""
+"""Frames that sliders, tracks and springs change: their distortion and their target errors."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,6 +14,7 @@ from app.document import (
     Variant,
     misses_target,
     segment_time_at,
+    slider_weights_at,
 )
 from app.motion import Animation, ParentMotion
 from app.reports.acting_frames import acting_frames
@@ -39,7 +40,7 @@ class Short:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CorrectedReport:
-    """The frames of a clip that tracks and springs change.
+    """The frames of a clip that sliders, tracks and springs change.
 
     Parameters
     ----------
@@ -58,8 +59,13 @@ class CorrectedReport:
     short : tuple of Short
         The unreachable targets.
     looked_at, left_out : int
-        Frames at which tracks and springs act, repeats counted once: examined ones at equal steps,
+        Frames at which they act, repeats counted once: examined ones at equal steps,
         and the rest.
+    slid : int
+        Number of examined frames with sliders. They keep the layer's limits by construction, and
+        are measured, not proven.
+    curbed : float
+        Largest change of ln |f_z| that keeps sliders within the limits.
     """
 
     frames: int
@@ -71,6 +77,8 @@ class CorrectedReport:
     short: tuple[Short, ...]
     looked_at: int
     left_out: int
+    slid: int
+    curbed: float
 
     @property
     def excess(self) -> DistortionRange:
@@ -103,16 +111,28 @@ def report_corrected(
         [boundary.points, *(boundary.points * (1 - s) + ends * s for s in BETWEEN)]
     )
     animation = Animation(clip, variant, points=points, carried=carried)
-    if animation.corrections is None:
+    tracks, sliders = animation.corrections, animation.base.sliders
+    if tracks is None and sliders is None:
         return None
     acting, counts = acting_frames(clip, is_carried=carried is not None)
-    step = _step(len(acting), animation.corrections.run_up)
+    step = _step(len(acting), 0 if tracks is None else tracks.run_up)
     looked_at = acting[::step].tolist()
-    corrections = {frame: animation.corrections.correction_at(frame) for frame in looked_at}
+    corrections = {
+        frame: None if tracks is None else tracks.correction_at(frame) for frame in looked_at
+    }
+    slid = {} if sliders is None else {f: sliders.solution_at(f) for f in looked_at}
+    changed = [frame for frame, each in corrections.items() if each is not None or frame in slid]
     found = {frame: each for frame, each in corrections.items() if each is not None}
     repeats = dict(zip(looked_at, counts[::step].tolist(), strict=True))
     # Equal frames are examined once.
-    same = {frame: (id(found[frame]), segment_time_at(clip, frame)) for frame in found}
+    same = {
+        frame: (
+            id(corrections[frame]),
+            slider_weights_at(clip, frame),
+            segment_time_at(clip, frame),
+        )
+        for frame in changed
+    }
     once = {each: frame for frame, each in reversed(same.items())}
     proofs = {at: _proven(animation, frame) for at, frame in once.items()}
     reached = [
@@ -120,7 +140,7 @@ def report_corrected(
     ]
     between = [frame + 0.5 for frame in once.values() if frame < clip.frames.last]
     return CorrectedReport(
-        frames=sum(repeats[frame] for frame in found),
+        frames=sum(repeats[frame] for frame in changed),
         proven=sum(repeats[frame] for frame, at in same.items() if proofs[at] is not None),
         points=len(points),
         reached=reduce(DistortionRange.joined, reached, NOTHING),
@@ -131,6 +151,8 @@ def report_corrected(
         short=_short(clip, step, {frame: each.target_errors for frame, each in found.items()}),
         looked_at=len(looked_at),
         left_out=len(acting) - len(looked_at),
+        slid=sum(repeats[frame] for frame in slid),
+        curbed=max((each.curbed for each in slid.values()), default=0.0),
     )
 
 
@@ -146,9 +168,9 @@ def _proven(animation: Animation, frame: int) -> DistortionRange | None:
     """Return the proof of a corrected frame; None if there is no proof against folding."""
     corrections = animation.corrections
     correction = None if corrections is None else corrections.correction_at(frame)
-    if correction is None:
+    if correction is None or animation.base.sliders is not None:
         return None
-    inbetweens, time = animation.base.segment_at(frame)
+    inbetweens, time = animation.base.unslid_at(frame)
     proof = prove(inbetweens.with_correction(correction.series, animation.sampler.basis), time)
     return (
         DistortionRange(proof.k, proof.sigma_a, proof.sigma_b)

@@ -261,7 +261,7 @@ def _pins(layer: Layer) -> tuple[complex, ...]:
 
 
 def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = None) -> Pose:
-    """Return a single map that is nearest to the displayed frame, as a pose.
+    """Return a single map that is nearest to a frame without sliders, as a pose.
 
     At a key it is the key's own pose. In-betweens are no maps over the cage, so their derivatives
     are fitted on the outline. A fit without certificate is mixed with the nearer key. A sibling of
@@ -278,7 +278,9 @@ def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | No
     sampler = PoseSampler(
         layer.domain, anchor=layer.anchor, points=boundary.points, sibling=sibling
     )
-    blended = Animation(clip, points=boundary.points, sampler=sampler).base.frame(frame)
+    animation = Animation(clip, points=boundary.points, sampler=sampler)
+    inbetweens, time = animation.base.unslid_at(frame)
+    blended = inbetweens.frame(time)
     fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
     for share in (1.0, 0.5, 0.25, 0.0):
         own = layer.map_of(near)

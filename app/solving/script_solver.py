@@ -14,18 +14,18 @@ from app.document import (
     Keyframe,
     Layer,
     Pose,
-    Target,
     brushed_stiffness,
     handle_commands,
     is_visible,
     layer_commands,
-    measure_target_errors,
     stiffness_commands,
 )
 from app.errors import LissomError
-from app.solving.drag_solver import DragSolver, Rig
-from app.solving.script.pose_script import LayerScript, PoseKey, PoseScript
+from app.solving.drag_solver import Rig
+from app.solving.script.keys import PoseKey
+from app.solving.script.pose_script import LayerScript, PoseScript
 from app.solving.script.sounds import with_sounds
+from app.solving.script_poses import solve_pose, with_sliders
 from app.solving.script_scene import (
     find_layer,
     resolve_channels,
@@ -39,11 +39,8 @@ from app.solving.script_scene import (
 )
 from app.storage import make_still_layer
 from app.texts import _, message_of
-from engine.deform import BoundedPull
 from engine.errors import EngineError
 
-# Largest number of steps; a drag that needs more moves slowly along a limit.
-MOST_STEPS = 1500
 SAME_PLACE = 1e-6  # pixels: tolerance for rounding
 
 
@@ -82,8 +79,9 @@ def pose_document(
     for identity, part in named.items():
         with _whose(part):
             layer, found = _posed(document.layer(identity), part, progress, loop=script.loop)
+            layer, more = with_sliders(document, layer, part.sliders, progress)
         document = document.with_layer(layer)
-        notices += found
+        notices += [*found, *more]
     document = with_switch_groups(with_world_transforms(document, script), script)
     document = with_sounds(document, script.sounds, script.folder)
     return document, (
@@ -237,7 +235,7 @@ def _posed(
     notices: list[str] = []
     for key in part.keys:
         progress(whose + _("solving the key at frame {frame}").format(frame=key.frame))
-        pose, found = _solve(rig, pose, key)
+        pose, found = solve_pose(rig, pose, key, _("frame {frame}").format(frame=key.frame))
         again = keys[0] if loop and key is part.keys[-1] and keys else _repeated(part, keys, key)
         is_alike = again is not None and _has_same_targets(rig, pose, again.pose)
         if again is not None and is_alike:
@@ -275,50 +273,3 @@ def _has_same_targets(rig: Rig, pose: Pose, other: Pose) -> bool:
         and pose.targets[held.id].rotation == other.targets[held.id].rotation
         for held in rig.handles
     )
-
-
-def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
-    """Drag the handles from a pose to the targets of a key."""
-    layer = rig.layer
-    identities = {handle.name: handle.id for handle in layer.handles}
-    named = {identities[name]: place for name, place in key.targets.items()}
-    turned = {identities[name]: turn for name, turn in key.turns.items()}
-    carried = layer.sprung_handles & named.keys()
-    notices = [
-        _(
-            "frame {frame}: {handle!r} has a spring, which ignores targets of keys; leave its "
-            "target out"
-        ).format(frame=key.frame, handle=layer.handle(identity).name)
-        for identity in sorted(carried)
-    ]
-    for identity in carried:
-        del named[identity]
-    targets = dict(start.targets)
-    for identity in named.keys() | (turned.keys() - layer.sprung_handles):
-        before = targets[identity]
-        place = named.get(identity, before.position)
-        targets[identity] = Target(position=place, rotation=turned.get(identity, before.rotation))
-    if all(
-        (start.targets[i].position, start.targets[i].rotation) == (target.position, target.rotation)
-        for i, target in targets.items()
-    ):
-        return start, notices
-    hands = tuple(BoundedPull((identity,), key.pull) for identity in named)
-    drag = DragSolver.begin(rig, start).step_towards(targets, MOST_STEPS, hands)
-    target_errors = measure_target_errors(layer, drag.make_pose(targets))
-    drag, released = drag.release(targets, hands)
-    left = {**targets, **released}
-    pose = drag.step_towards(left, MOST_STEPS).make_pose(left)
-    # Joints of bones may yield, since the script does not hold them.
-    joints = {identity for hand in rig.find_yielding_joints(hands) for identity in hand.handles}
-    notices += [
-        _("frame {frame}: {handle!r} is {error:.1f} px from its target, {reason}").format(
-            frame=key.frame,
-            handle=layer.handle(identity).name,
-            error=error,
-            reason=target_errors.reason,
-        )
-        for identity, error in target_errors.errors.items()
-        if identity not in joints
-    ]
-    return pose, notices

@@ -118,7 +118,12 @@ from app.storage.preferences import (
     settings_folder as settings_folder,
 )
 from app.storage.project.channel_codecs import IN_FILES as IN_FILES, key_codec as key_codec
-from app.storage.project.codecs import TEXT as TEXT, Codec as Codec, located as located
+from app.storage.project.codecs import (
+    TEXT as TEXT,
+    VALUE as VALUE,
+    Codec as Codec,
+    located as located,
+)
 from app.storage.project_file import (
     load_project as load_project,
     project_digest as project_digest,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Self
+from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -62,6 +62,17 @@ class PointValues(NamedTuple):
     fz: Complexes
     g: Complexes
     k: Complexes
+
+
+class Correctable(Protocol):
+    """In-betweens, or a single frame, that corrections of handles change."""
+
+    @property
+    def sign(self) -> int: ...
+
+    def anchor_position(self, time: float, /) -> complex: ...
+
+    def frame_with_values(self, time: float, /) -> tuple[Frame, PointValues]: ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

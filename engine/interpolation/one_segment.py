@@ -17,7 +17,7 @@ from engine.interpolation.added.pins.pinning import (
 from engine.interpolation.added.pins.targets import SegmentPins
 from engine.interpolation.blends.blend import Blend
 from engine.interpolation.blends.table import BLENDS
-from engine.interpolation.inbetweens import Frame, Inbetweens
+from engine.interpolation.inbetweens import Correctable, Frame, Inbetweens
 from engine.interpolation.keyframe_blend.segment import KeyframeSegment
 from engine.interpolation.sampled_domain import SampledDomain
 from engine.interpolation.scaling.smoothed_rho import SmoothedRho
@@ -65,7 +65,9 @@ def value_points_for_corrections(corrector: PointCorrector) -> Complexes:
     return np.concatenate([corrector.paths.nodes, corrector.boundary.points])
 
 
-def evaluate_base(inbetweens: Inbetweens, corrector: PointCorrector, time: float) -> CorrectionBase:
+def evaluate_base(
+    inbetweens: Correctable, corrector: PointCorrector, time: float
+) -> CorrectionBase:
     """Return an in-between in the form that its correction needs.
 
     The in-betweens are at the handles, with values at `value_points_for_corrections`.

@@ -50,7 +50,7 @@ class FrameSolution(NamedTuple):
     beyond : float
         How far ln |f_z| on the boundary may be outside the interval that the limits allow.
     share : float
-        Below 1 where the limits, the pins and the periods cannot be had together.
+        Below 1 where the limits and the periods cannot be had together.
     """
 
     weights: Floats

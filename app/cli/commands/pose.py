@@ -63,6 +63,20 @@ the root is the nearest handle without a spring, along bones, or else along the 
 from 0, the default, to 1, lets that distance change; 1 swings freely. Keys do not hold handles with
 springs: in poses the body carries them.
 
+A slider adds poses of the drawing to the motion of the keys:
+
+   "sliders": [{"name": "turn",
+                "poses": [{"at": -1, "targets": {"nose": [90, 880]}}, {"at": 0},
+                          {"at": 1, "targets": {"nose": [150, 880]}}],
+                "keys": [{"frame": 0, "value": -1}, {"frame": 20, "value": 1}]}]
+
+It has 2 to 8 poses. Each is dragged from the undeformed drawing, with "targets", "turn" and "pull"
+as in a key, and "turns", further whole turns. A handle that no pose moves stays. The limits hold
+for all values, also for 30 % beyond the outer poses. A pad has two numbers, "at": [0, 1] and
+"value": [0.5, 1], and poses on a grid of at most 5 by 5. Keys have ease and passing as above.
+"value" is used without keys, and "delay" is in frames. With "driver": "head", the slider of this
+name in the layer "head" gives the value, and several layers turn together.
+
 A stretch of time repeats with
 
    "cycles": [{"from": 0, "to": 24, "until": 96}]

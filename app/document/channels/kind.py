@@ -31,6 +31,7 @@ class Quantity(Enum):
     FLAG = auto()
     LAYER = auto()  # id; name in scripts
     COLOUR = auto()  # red, green and blue, each from 0 to 1
+    VALUE = auto()  # of a slider, complex: one number, or two of a pad
     ANYTHING = auto()  # JSON that the kind does not read
 
 
@@ -58,6 +59,7 @@ class ChannelKind(Generic[V]):
     components: tuple[KeyedProperty[Key[V], Any], ...] = ()
     join: Callable[..., V] = lambda value: value  # makes a value from its components
     of_handles: bool = False  # whether each handle has a channel of the kind, named by its id
+    of_sliders: bool = False  # whether each slider has a channel of the kind, of its name
     is_blended: bool = False  # whether a module of its own interpolates, as the engine does poses
     check: Callable[[V], None] = lambda _: None  # raises a `LissomError`
     tangent_mode: TangentMode = TangentMode.SMOOTH  # of new keys

@@ -14,6 +14,7 @@ from app.texts import N_
 
 # Keys closer than this count as equal: pixels, radians, logarithms of zoom, and opacity.
 SAME_PLACE, SAME_TURN, SAME_ZOOM, SAME_OPACITY = 0.01, 1e-4, 1e-5, 1e-4
+SAME_VALUE, LARGEST_VALUE = 1e-6, 1e6  # of sliders
 
 
 def require_opacity(opacity: float) -> None:
@@ -41,6 +42,16 @@ def require_depth(depth: float) -> None:
         -1 <= depth <= 1,
         N_("A depth must be from −1 (behind) to 1 (in front), not {depth:g}."),
         depth=depth,
+    )
+
+
+def require_value(value: complex) -> None:
+    """Refuse a slider's value that is not finite."""
+    require(
+        abs(value) <= LARGEST_VALUE,
+        N_("The value of a slider must be at most {largest:,.0f}, not {value}."),
+        largest=LARGEST_VALUE,
+        value=value,
     )
 
 
@@ -141,6 +152,16 @@ DEPTH: Final = ChannelKind[float](
     check=require_depth,
     moves_layer=True,
 )
+SLIDER: Final = ChannelKind[complex](
+    name="slider",
+    label=N_("Slider"),
+    icon="SLIDERS",
+    fields=(ValueField("value", Quantity.VALUE),),
+    components=(KeyedProperty(lambda key: key.value, SAME_VALUE),),
+    of_sliders=True,
+    check=require_value,
+    moves_layer=True,
+)
 
 VOLUME: Final = ChannelKind[float](
     name="volume",
@@ -155,5 +176,5 @@ VOLUME: Final = ChannelKind[float](
 
 # Kinds whose keys a layer stores by their channels' ids.
 LAYER_KINDS: Final[Mapping[str, ChannelKind[Any]]] = MappingProxyType(
-    {kind.name: kind for kind in (TRANSFORM, OPACITY, TINT, DRAW_ORDER, VISIBILITY, DEPTH)}
+    {kind.name: kind for kind in (TRANSFORM, OPACITY, TINT, DRAW_ORDER, VISIBILITY, DEPTH, SLIDER)}
 )

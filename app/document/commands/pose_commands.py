@@ -7,7 +7,12 @@ import numpy as np
 from app.document.commands.command import layer_command, with_number
 from app.document.keyframe import LibraryPose, Pose, Target
 from app.document.layer import Layer
-from app.texts import _
+from app.errors import LissomError
+from app.texts import N_, _
+
+IN_USE = N_(
+    "The slider {slider!r} uses the pose {pose!r}. Delete the slider, or give it another pose."
+)
 
 
 @layer_command(_("Save pose"))
@@ -25,13 +30,25 @@ def rename_pose(layer: Layer, name: str, to: str) -> Layer:
     if to == name:
         return layer
     library = tuple(replace(kept, name=to) if kept is renamed else kept for kept in layer.library)
-    return replace(layer, library=library)
+    sliders = tuple(
+        replace(
+            slider,
+            poses=tuple(
+                replace(each, pose=to) if each.pose == name else each for each in slider.poses
+            ),
+        )
+        for slider in layer.sliders
+    )
+    return replace(layer, library=library, sliders=sliders)
 
 
 @layer_command(_("Delete pose"))
 def delete_pose(layer: Layer, name: str) -> Layer:
     """Delete a pose from the library; keys made from it stay."""
     gone = layer.library_pose(name)
+    for slider in layer.sliders:
+        if name in {each.pose for each in slider.poses}:
+            raise LissomError(_(IN_USE).format(pose=name, slider=slider.name))
     return replace(layer, library=tuple(kept for kept in layer.library if kept is not gone))
 
 

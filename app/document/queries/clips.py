@@ -4,7 +4,10 @@ from dataclasses import dataclass, fields
 from operator import attrgetter
 
 from app.baseline import Baseline
-from app.document.channels.kinds import LAYER_KINDS
+from app.document.channels.cycles import Cycle
+from app.document.channels.key import Key
+from app.document.channels.kinds import LAYER_KINDS, SLIDER
+from app.document.channels.sliders import Slider
 from app.document.keyframe import Handle, Keyframe
 from app.document.layer import Layer
 from app.document.model import Document
@@ -34,7 +37,22 @@ def motion_source(layer: Layer) -> tuple[object, ...]:
     """Return the fields that determine a layer's motion; equal values mean equal motion."""
     stiffness = None if layer.stiffness is None else layer.stiffness.tobytes()
     moving = tuple(each for each in layer.channels.items() if LAYER_KINDS[each[0][0]].moves_layer)
-    return (*_of_layer(layer), tuple(map(_of_handle, layer.handles)), stiffness, moving)
+    used = {each.pose for slider in layer.sliders for each in slider.poses}
+    poses = tuple(kept.pose for kept in layer.library if kept.name in used)
+    return (*_of_layer(layer), tuple(map(_of_handle, layer.handles)), stiffness, moving, poses)
+
+
+@dataclass(frozen=True, slots=True)
+class SliderChannel:
+    """A slider of a layer, with the keys that give its value.
+
+    They are those of the driver, if there is one, with its cycles and with its value without keys.
+    """
+
+    slider: Slider
+    keys: tuple[Key[complex], ...]
+    cycles: tuple[Cycle, ...]
+    value: complex
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -50,6 +68,7 @@ class Clip:
     # Clips of all ancestors, without ancestors of their own. Set only if springs or scene-space
     # tracks depend on the motion of the ancestors.
     parents: "tuple[Clip, ...]" = ()
+    sliders: tuple[SliderChannel, ...] = ()  # the enabled ones
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Clip):
@@ -64,7 +83,7 @@ class Clip:
     @property
     def _time(self) -> tuple[object, ...]:
         own = (self.layer.id, self.frames, self.loop, self.fps)
-        return (*own, self.baseline, self.parents)
+        return (*own, self.baseline, self.parents, self.sliders)
 
     @property
     def keys(self) -> tuple[Keyframe, ...]:
@@ -88,7 +107,24 @@ def clip_of(document: Document, layer: int) -> Clip:
             loop=document.loop,
             fps=document.fps,
             parents=parents,
+            sliders=_slider_channels(document, each),
         )
 
     parents = document.all_ancestors(layer) if any(feels) else ()
     return clip(own, tuple(map(clip, parents)))
+
+
+def _slider_channels(document: Document, layer: Layer) -> tuple[SliderChannel, ...]:
+    found = []
+    for slider in layer.sliders:
+        driver = None if slider.driver is None else document.find_layer(slider.driver)
+        source = next(each for each in (driver, layer) if each and slider.name in _names(each))
+        keys = source.keys_of(SLIDER, slider.name)
+        value = source.slider(slider.name).value
+        if slider.enabled:
+            found.append(SliderChannel(slider, keys, source.cycles, value))
+    return tuple(found)
+
+
+def _names(layer: Layer) -> set[str]:
+    return {each.name for each in layer.sliders}

@@ -15,8 +15,7 @@ from app.document import (
     Clip,
     DistortionRange,
     Variant,
-    keyed_pose_at,
-    segment_time_at,
+    slider_poses,
     stiffness_source,
 )
 from app.motion.inbetweens.auto_pins import AutoPins, firmness_at
@@ -24,11 +23,11 @@ from app.motion.inbetweens.keyframe_motion import KeyframeMotion
 from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.motion.inbetweens.secondary_motion import SecondaryMotion, SecondaryTargets
-from app.motion.inbetweens.segment_keys import segment_key, segment_poses
+from app.motion.inbetweens.segment_keys import frame_content
 from app.motion.inbetweens.spring_offsets import ParentMotion
 from engine.arrays import Complexes, Floats
 from engine.deform.correction.point_targets import PointTargets
-from engine.interpolation import CorrectionBase, correct_frame, evaluate_base
+from engine.interpolation import CorrectionBase, Inbetweens, correct_frame, evaluate_base
 
 KEPT = 2**26  # bytes of cached corrections per outline
 # Per L: the pull of a track at which its target error is L. At a tenth of it, which within reach
@@ -59,7 +58,7 @@ def have_same_base_frames(clip: Clip, other: Clip) -> bool:
             *(layer.id, layer.domain, layer.handles, layer.keys, layer.cycles, layer.anchor),
             *(layer.attachments, layer.has_auto_pins, layer.springs, layer.variant, layer.bounds),
             *(stiffness_source(layer), layer.bones),
-            *(of.frames, of.loop, of.fps, of.baseline, of.parents),
+            *(of.frames, of.loop, of.fps, of.baseline, of.parents, of.sliders, slider_poses(of)),
         )
 
     return source(clip) == source(other)
@@ -160,7 +159,8 @@ class FrameCorrector:
 
         def solve() -> SecondaryCorrection:
             inbetweens, time = self._motion.segment_at(frame)
-            found = correct_frame(inbetweens, self._corrector, base, time, targets, bounds)
+            proven = inbetweens if isinstance(inbetweens, Inbetweens) else None
+            found = correct_frame(proven, self._corrector, base, time, targets, bounds)
             handles = self.clip.layer.handles
             tracked = [i for i, handle in enumerate(handles) if handle.id in wanted.tracked]
             reached = DistortionRange(*found.reached)
@@ -172,7 +172,8 @@ class FrameCorrector:
                 steps=found.steps,
             )
 
-        return self._remembered((*self._content_key(frame), *_content(wanted)), solve)
+        base_content = frame_content(self.clip, frame, self._variant)
+        return self._remembered((base_content, self._of_what, *_content(wanted)), solve)
 
     def _targets(self, base: CorrectionBase, wanted: SecondaryTargets) -> PointTargets:
         """Return targets of handles with tracks and springs; other handles keep their places.
@@ -217,15 +218,6 @@ class FrameCorrector:
                 del self._known[next(iter(self._known))]
             self._known[key] = known
         return known
-
-    def _content_key(self, frame: float) -> tuple[object, ...]:
-        """Return the values that determine a frame's motion; they keep the poses alive."""
-        clip, moment = self.clip, segment_time_at(self.clip, frame)
-        resting = keyed_pose_at(clip, moment)
-        if resting is not None:
-            return resting, *self._of_what
-        pair = segment_key(clip, moment.segment, self._variant)
-        return segment_poses(clip, moment.segment), pair, moment.weight, *self._of_what
 
 
 def _content(parts: Iterable[object]) -> tuple[object, ...]:

@@ -12,7 +12,7 @@ from app.errors import report_progress
 from app.motion.inbetweens.content_cache import ContentCache, digest
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.motion.inbetweens.segment_keys import SegmentKey
-from engine.arrays import Complexes, freeze, nbytes_of
+from engine.arrays import Complexes, Indices, freeze, nbytes_of
 from engine.deform.correction.corrector import PointCorrector, build_corrector
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import MeshedDomain
@@ -38,6 +38,7 @@ from engine.interpolation import (
 )
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
+from engine.sliders import FrameSolution, FrameSolver
 
 # Caches of sampled outlines and keyframes, in bytes. Values that layers hold take no additional
 # memory here. Transforms are the slowest to compute, so they have a cache of their own.
@@ -46,6 +47,7 @@ _TRANSFORMS = ContentCache(32 * 2**20)
 
 
 MAX_PINNED = 512  # segments with cached pins per outline
+MAX_SLID = 1024  # frames with sliders per outline
 
 
 class _Sized(Protocol):
@@ -107,6 +109,7 @@ class OutlineCache:
         self.guard = threading.Lock()
         # With the poses whose ids are in the keys.
         self._pins: dict[SegmentKey, tuple[CorrectionSeries, tuple[Pose, ...]]] = {}
+        self._slider_solutions: dict[object, FrameSolution] = {}
 
     def find_pins(self, pair: SegmentKey) -> CorrectionSeries | None:
         """Return the pins of a segment; None if they are not known."""
@@ -127,6 +130,18 @@ class OutlineCache:
             while len(self._pins) > MAX_PINNED:
                 del self._pins[next(iter(self._pins))]
         return known[0]
+
+    def slider_solution(self, key: object, solve: Callable[[], FrameSolution]) -> FrameSolution:
+        """Return the solution of a frame with sliders by its content, solved if missing."""
+        with self.guard:
+            known = self._slider_solutions.pop(key, None)
+        if known is None:
+            known = solve()
+        with self.guard:
+            self._slider_solutions[key] = known
+            while len(self._slider_solutions) > MAX_SLID:
+                del self._slider_solutions[next(iter(self._slider_solutions))]
+        return known
 
     @property
     def transform(self) -> HilbertTransform:
@@ -276,6 +291,27 @@ class PoseSampler:
     def inbetweens_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a segment; motion through smooth keys keeps the limits."""
         return self._prepared(self.segment_of(segment, bounds, variant), variant)
+
+    def slider_solver(
+        self,
+        poses: Sequence[Pose],
+        turns: Indices,
+        bounds: Bounds,
+        pins: Complexes,
+        *,
+        is_anchored: bool,
+    ) -> FrameSolver:
+        """Return the solver of frames with these poses of sliders, cached by content."""
+        maps = [self.samples(pose).map for pose in poses]
+        content = digest(
+            *(*self.domain.loops, *self.domain.cages, turns, pins),
+            *(each for f in maps for each in (f.phi, f.psi, f.logs)),
+        )
+        key = ("slider", content, bounds, self.sites.anchor, is_anchored)
+        transform = self.known.transform
+        given = (maps, turns, self.sites, transform, bounds, pins)
+        make = partial(FrameSolver.of, *given, is_anchored=is_anchored)
+        return _SAMPLED.find(key, make, _nbytes)
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Return whether a single in-between takes less time than the whole segment."""

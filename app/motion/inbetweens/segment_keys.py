@@ -1,6 +1,16 @@
 """Cache keys of the in-betweens of two keys, independent of the clip."""
 
-from app.document import Clip, Pose, Variant, pinned_segments, pose_segments
+from app.document import (
+    Clip,
+    Pose,
+    Variant,
+    keyed_pose_at,
+    pinned_segments,
+    pose_segments,
+    segment_time_at,
+    slider_poses,
+    slider_weights_at,
+)
 
 # Ids of the maps (handles may be added and deleted) of both keys and of the neighbour keys at
 # smooth ends; full turns, tangents, limits, anchor and variant.
@@ -29,3 +39,17 @@ def segment_poses(clip: Clip, interval: int) -> tuple[Pose, ...]:
     pinned = pinned_segments(clip)[interval]
     poses = tuple(key.pose for key in pose_segments(clip)[interval].keys)
     return poses if pinned is None else pinned.poses
+
+
+def frame_content(clip: Clip, frame: float, variant: Variant | None = None) -> tuple[object, ...]:
+    """Return the values that determine a frame before tracks and springs.
+
+    They keep the poses alive. Limits, anchor and stiffness of the layer are left out.
+    """
+    sliders = slider_poses(clip), slider_weights_at(clip, frame)
+    moment = segment_time_at(clip, frame)
+    resting = keyed_pose_at(clip, moment)
+    if resting is not None:
+        return resting, sliders
+    pair = segment_key(clip, moment.segment, variant)
+    return segment_poses(clip, moment.segment), pair, moment.weight, sliders

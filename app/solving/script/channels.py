@@ -75,7 +75,8 @@ def parse_channels(
     """Return the channels of a layer, with names of handles and layers; `depths` of the handles."""
     found: dict[tuple[str, int | str | None], tuple[Key[Any], ...]] = {}
     whole = f"{where}channels"
-    given = read_fields(script.get("channels", {}), whole, tuple(LAYER_KINDS))
+    kinds = tuple(name for name, kind in LAYER_KINDS.items() if not kind.of_sliders)
+    given = read_fields(script.get("channels", {}), whole, kinds)
     for name, content in given.items():
         at = f"{whole}.{name}"
         rows: dict[Any, Any] = as_object(content, at) if name == DEPTH.name else {None: content}
@@ -93,7 +94,9 @@ def parse_channels(
             raise LissomError(_(TWICE).format(where=at, other=other))
     for field, kind in earlier.items():
         if kind is TRANSFORM:
-            found[kind.name, None] = _read_tangent_keys(kind, script[field], f"{where}{field}")
+            at = f"{where}{field}"
+            keys = read_fields(script[field], at, ("keys",))["keys"]
+            found[kind.name, None] = read_tangent_keys(kind, keys, f"{at}.keys")
         elif kind is not OPACITY or isinstance(script[field], list):
             found[kind.name, None] = read_pairs(kind, script[field], f"{where}{field}")
     for handle, records in fronts.items():
@@ -110,7 +113,8 @@ def parse_opacity(content: object, where: str) -> float | None:
 
 
 def parse_camera(content: object) -> tuple[Key[Any], ...]:
-    return _read_tangent_keys(CAMERA, content, "camera")
+    keys = read_fields(content, "camera", ("keys",))["keys"]
+    return read_tangent_keys(CAMERA, keys, "camera.keys")
 
 
 def read_keys(
@@ -152,9 +156,8 @@ def _record(kind: ChannelKind[Any], frame: object, value: object, at: str) -> Re
     return at, {"frame": frame, field.name: value}
 
 
-def _read_tangent_keys(kind: ChannelKind[Any], content: object, where: str) -> tuple[Key[Any], ...]:
+def read_tangent_keys(kind: ChannelKind[Any], keys: object, where: str) -> tuple[Key[Any], ...]:
     """Return the keys of objects with "ease" and "passing"."""
-    where, keys = f"{where}.keys", read_fields(content, where, ("keys",))["keys"]
     names = ("frame", "ease", "passing", *(each.name for each in kind.fields))
     records = []
     for index, entry in enumerate(as_list(keys, where)):

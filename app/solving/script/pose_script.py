@@ -1,15 +1,12 @@
 """Pose scripts: handles, keys and targets of an animation as JSON."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import inf
 from pathlib import Path
 from typing import Any
 
 from app.document import (
     LAYER_KINDS,
-    LINEAR,
     NATURAL,
     VARIANTS,
     VISIBILITY,
@@ -17,10 +14,8 @@ from app.document import (
     Camera,
     ChannelKeys,
     Cycle,
-    Easing,
     Key,
     Spring,
-    TangentMode,
     Track,
     Variant,
 )
@@ -29,11 +24,9 @@ from app.solving.script.channels import parse_camera, parse_channels, parse_opac
 from app.solving.script.fields import (
     NO_KEYS,
     check_frame_order,
-    check_handle_name,
-    read_easing_and_tangent,
     read_fields,
-    read_frame,
 )
+from app.solving.script.keys import PoseKey, parse_key
 from app.solving.script.layers import (
     ScriptAttachment,
     ScriptSwitchGroup,
@@ -43,6 +36,7 @@ from app.solving.script.layers import (
     parse_switch_groups,
 )
 from app.solving.script.material import StiffRegion, parse_material
+from app.solving.script.sliders import ScriptSlider, parse_sliders
 from app.solving.script.sounds import ScriptSound, parse_sounds
 from app.solving.script.tracks import check_loop_periods, parse_cycles, parse_springs, parse_tracks
 from app.storage import (
@@ -62,28 +56,17 @@ from engine.maps import Bounds
 SCHEMA = 1
 LARGEST = 32 * 1024 * 1024  # bytes
 SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still", "camera", "canvas", "sounds")
-MOVING_FIELDS = ("keys", "tracks", "springs", "cycles", "movement", "opacity", "channels")
+MOVING_FIELDS = (
+    *("keys", "tracks", "springs", "sliders", "cycles"),
+    *("movement", "opacity", "channels"),
+)
 OWN_FIELDS = ("anchor", "handles", *MOVING_FIELDS, "stiff")
 STAGE_FIELDS = ("layers", "choices")
 LAYER_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
-KEY_FIELDS = ("frame", "targets", "turn", "pull", "ease", "passing", "front")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
 NO_VARIANT = N_("{where}variant must be one of {variants}, not {content}")
 WRONG_SCHEMA = N_("schema must be {own}, not {content}")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PoseKey:
-    """A key: its frame, the targets of the handles that it moves, and its easing."""
-
-    frame: int
-    targets: Mapping[str, complex]
-    pull: float = inf  # largest force on each of them, over the shape's diameter
-    ease: Easing = LINEAR
-    passing: TangentMode = TangentMode.SMOOTH
-    # Rotation of the shape at handles, in radians; other handles keep theirs.
-    turns: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,6 +103,7 @@ class LayerScript:
     opacity: float | None = None  # None keeps the drawing's opacity
     # With names of handles and layers. An empty visibility channel shows a hidden layer.
     channels: ChannelKeys = field(default_factory=dict)
+    sliders: tuple[ScriptSlider, ...] = ()
 
     @property
     def last(self) -> int:
@@ -128,6 +112,7 @@ class LayerScript:
         frames += [cycle.last if cycle.until is None else cycle.until for cycle in self.cycles]
         for (name, _part), keys in self.channels.items():
             frames += [key.frame for key in keys if not LAYER_KINDS[name].is_held]
+        frames += [key.frame for slider in self.sliders for key in slider.keys]
         return max(frames)
 
 
@@ -217,7 +202,9 @@ def _layer(script: JsonObject, where: str, usual: Mapping[str, Any], *, loop: bo
     keys = script["keys"]
     if not isinstance(keys, list) or not keys:
         raise LissomError(_(NO_KEYS).format(where=f"{where}keys"))
-    parsed = tuple(_key(key, f"{where}keys[{index}]", handles) for index, key in enumerate(keys))
+    parsed = tuple(
+        parse_key(key, f"{where}keys[{index}]", handles) for index, key in enumerate(keys)
+    )
     check_frame_order([key.frame for key in parsed], f"{where}keys")
     if script.get("anchor") is not None:
         own["anchor"] = as_point(script["anchor"], f"{where}anchor")
@@ -234,6 +221,7 @@ def _layer(script: JsonObject, where: str, usual: Mapping[str, Any], *, loop: bo
     own["parts"], own["bones"] = parse_material(
         script.get("stiff", []), f"{where}stiff", tuple(handles)
     )
+    own["sliders"] = parse_sliders(script.get("sliders", []), f"{where}sliders", handles)
     return LayerScript(handles=handles, keys=parsed, **own)
 
 
@@ -269,31 +257,3 @@ def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:
     if "still" in script:
         options["still"] = as_flag(script["still"], f"{where}still")
     return options
-
-
-def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> PoseKey:
-    key = read_fields(content, where, KEY_FIELDS)
-    targets = {
-        name: as_point(place, f"{where}.targets.{name}")
-        for name, place in as_object(key.get("targets", {}), f"{where}.targets").items()
-    }
-    turns = {
-        name: math.radians(as_number(turn, f"{where}.turn.{name}"))
-        for name, turn in as_object(key.get("turn", {}), f"{where}.turn").items()
-    }
-    for name in (*targets, *turns):
-        check_handle_name(name, handles, where)
-    pull = as_number(key["pull"], f"{where}.pull") if "pull" in key else inf
-    if not pull > 0:
-        raise LissomError(
-            _("{where}.pull must be positive, not {pull:g}").format(where=where, pull=pull)
-        )
-    ease, passing = read_easing_and_tangent(key, where)
-    return PoseKey(
-        frame=read_frame(key, where),
-        targets=targets,
-        pull=pull,
-        ease=ease,
-        passing=passing,
-        turns=turns,
-    )

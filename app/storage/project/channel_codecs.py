@@ -14,7 +14,7 @@ from app.document import (
     Quantity,
 )
 from app.errors import LissomError
-from app.storage.json_values import as_list, as_object, as_whole
+from app.storage.json_values import as_list, as_object, as_text, as_whole
 from app.storage.project import codecs
 from app.storage.project.codecs import MISSING, Codec, Field, list_of, located, optional, record
 from app.texts import N_, _
@@ -26,6 +26,7 @@ IN_FILES: Mapping[Quantity, Codec] = dict.fromkeys(Quantity, codecs.NUMBER) | {
     Quantity.POINT: codecs.POINT,
     Quantity.FLAG: codecs.FLAG,
     Quantity.LAYER: codecs.WHOLE,
+    Quantity.VALUE: codecs.VALUE,
     Quantity.COLOUR: list_of(codecs.NUMBER),
     Quantity.ANYTHING: codecs.ANYTHING,
 }
@@ -77,13 +78,15 @@ def _read_channels(content: object, where: str) -> tuple[ChannelKeys, tuple[obje
     for index, each in enumerate(as_list(content, where)):
         at, fields = f"{where}[{index}]", each if isinstance(each, dict) else {}
         name, part = fields.get("kind"), fields.get("part")
-        if name not in list(LAYER_KINDS) or (part is None) == LAYER_KINDS[name].of_handles:
+        kind = LAYER_KINDS.get(name) if isinstance(name, str) else None
+        if kind is None or (part is None) == (kind.of_handles or kind.of_sliders):
             unread.append(each)
             continue
-        channel = name, None if part is None else as_whole(part, f"{at}.part")
+        own = as_whole if kind.of_handles else as_text
+        channel = kind.name, None if part is None else own(part, f"{at}.part")
         if channel in channels:
             raise LissomError(_(DUPLICATE_CHANNEL).format(where=at))
-        channels[channel] = LAYER_KEYS[name].read(as_object(each, at)["keys"], f"{at}.keys")
+        channels[channel] = LAYER_KEYS[kind.name].read(as_object(each, at)["keys"], f"{at}.keys")
     return channels, tuple(unread)
 
 

@@ -62,6 +62,15 @@ NUMBER = Codec(verbatim, as_number)
 TEXT = Codec(verbatim, as_text)
 POINT = Codec(lambda point: [point.real, point.imag], as_point)
 
+VALUE = Codec(
+    lambda value: [value.real, value.imag] if value.imag else value.real,
+    lambda content, where: (
+        as_point(content, where)
+        if isinstance(content, list)
+        else complex(as_number(content, where))
+    ),
+)  # of a slider: one number, or two of a pad
+
 
 def optional(codec: Codec) -> Codec:
     """Return a codec whose values may be None."""

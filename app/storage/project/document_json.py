@@ -31,6 +31,8 @@ from app.document import (
     PictureFile,
     PictureSettings,
     Pose,
+    Slider,
+    SliderPose,
     Spring,
     SwitchGroup,
     TangentMode,
@@ -53,6 +55,7 @@ from app.storage.project.codecs import (
     NUMBER,
     POINT,
     TEXT,
+    VALUE,
     WHOLE,
     Codec,
     Field,
@@ -158,6 +161,25 @@ LIBRARY_POSE = record(
     dict,
     Field("name", TEXT),
     Field("targets", TARGETS, lambda kept: kept.pose.targets.items()),
+)
+SLIDER = record(
+    Slider,
+    Field("name", TEXT),
+    Field(
+        "poses",
+        list_of(
+            record(
+                SliderPose,
+                Field("at", VALUE),
+                Field("pose", optional(TEXT)),
+                Field("turns", WHOLE, default=0),
+            )
+        ),
+    ),
+    Field("value", VALUE, default=0j),
+    Field("driver", optional(WHOLE), default=None),
+    Field("delay", WHOLE, default=0),
+    Field("enabled", FLAG, default=True),
 )
 TRACK = record(
     Track,
@@ -339,6 +361,7 @@ LAYER = record(
         nested_record(Bounds, *(Field(name, NUMBER) for name in ("k", "sigma_a", "sigma_b"))),
     ),
     Field("library", list_of(LIBRARY_POSE)),
+    Field("sliders", list_of(SLIDER), default=()),
     Field("mirror", optional(NUMBER)),
     # Properties of a layer among others; a scene of one layer writes none of them.
     Field("name", TEXT, default="layer"),

@@ -16,6 +16,7 @@ from app.document import (
     Key,
     Marker,
     Quantity,
+    format_slider_value,
 )
 from app.texts import _
 
@@ -76,6 +77,8 @@ def _format_field(document: Document, quantity: Quantity, value: Any) -> str:
             text = "#" + "".join(f"{round(255 * part):02x}" for part in value)
         case Quantity.DEPTH:
             text = f"{value:+.2f}"
+        case Quantity.VALUE:
+            text = format_slider_value(value)
         case _:
             text = f"{value}"
     return text

@@ -50,7 +50,7 @@ class FrameCorrection:
 
 
 def correct_frame(
-    inbetweens: Inbetweens,
+    inbetweens: Inbetweens | None,
     corrector: PointCorrector,
     base: CorrectionBase,
     time: float,
@@ -62,13 +62,14 @@ def correct_frame(
     Near a limit, a proof shows that the correction keeps the limit between the samples, too.
     Without a proof the correction is solved again within limits that are tighter by about the
     proven excess, so that nothing jumps between frames, and at last shortened.
-    `inbetweens` are as in `evaluate_base`, and `base` is theirs at the time.
+    `inbetweens` are as in `evaluate_base`, and `base` is theirs at the time. Without in-betweens,
+    as for a frame with sliders, the limits hold at the samples, without a proof between them.
     """
     nodes, samples = base.nodes, base.samples
     own = extremes(corrector, samples)
     inner, least = frame_limits(bounds, own + BEYOND), own + BEYOND / 2
     found = solve_within(corrector, nodes, samples, targets, inner)
-    if found.is_limited:
+    if found.is_limited and inbetweens is not None:
         if (own > frame_limits(bounds)).any():
             own = _proven(inbetweens, time) + BEYOND
         limits = frame_limits(bounds, own, inside=-BEYOND)

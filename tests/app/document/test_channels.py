@@ -19,6 +19,7 @@ from app.document import (
     MARKER,
     PARENT,
     POSE,
+    SLIDER,
     SWITCH,
     TRACK,
     VISIBILITY,
@@ -34,6 +35,8 @@ from app.document import (
     Marker,
     Meshing,
     Quantity,
+    Slider,
+    SliderPose,
     SwitchGroup,
     TangentMode,
     Track,
@@ -87,6 +90,7 @@ VALUES = {
     Quantity.FLAG: st.booleans(),
     Quantity.LAYER: st.sampled_from(OTHERS),
     Quantity.COLOUR: st.tuples(SHARES, SHARES, SHARES),
+    Quantity.VALUE: st.builds(complex, *2 * [st.floats(-1, 1)]),
     Quantity.ANYTHING: st.none(),
 }
 
@@ -97,6 +101,8 @@ def channel_of(kind):
         return Channel(kind)
     if kind is SWITCH:
         return Channel(kind, part="mouths")
+    if kind is SLIDER:
+        return Channel(kind, LAYER, "turn")
     return Channel(kind, LAYER, 0 if kind in {TRACK, DEPTH} else None)
 
 
@@ -116,7 +122,9 @@ def empty_document():
     document = handle_commands.add_handle(0, CENTRE + 30j)(document)
     layer = document.layers[0]
     track = Track(handles=(0,), keys=(TrackKey(frame=0, place=0j),), keys_rotation=True)
-    layer = replace(layer, anchor=CENTRE, tracks=(track,))
+    poses = tuple(SliderPose(at=complex(at), pose=None) for at in (-1, 1))
+    slider = Slider(name="turn", poses=poses)
+    layer = replace(layer, anchor=CENTRE, tracks=(track,), sliders=(slider,))
     others = [replace(layer, id=each, name=f"layer {each}", tracks=()) for each in OTHERS]
     group = SwitchGroup(name="mouths", layers=OTHERS)
     frames = FrameRange(0, 80)
@@ -244,7 +252,7 @@ def value_at(document, channel, frame):
     if kind in VALUES_OF_LAYER:
         return VALUES_OF_LAYER[kind](document, layer, frame)
     if not kind.is_held:
-        return layer_value_at(document, layer, kind, frame)
+        return layer_value_at(document, layer, kind, frame, channel.part)
     rest, row = rest_value(layer, kind, channel.part), layer.keys_of(kind, channel.part)
     key = held_key_at(repeated_keys(row, layer.cycles, document.frames.last, rest), frame)
     return rest if key is None else key.value

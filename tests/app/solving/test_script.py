@@ -581,7 +581,10 @@ SAMPLES = dict.fromkeys(Quantity, ((0.25, 0.5), (0.25, 0.5))) | {
 }
 
 
-@pytest.mark.parametrize("kind", LAYER_KINDS.values(), ids=LAYER_KINDS)
+IN_CHANNELS = [kind for kind in LAYER_KINDS.values() if not kind.of_sliders]
+
+
+@pytest.mark.parametrize("kind", IN_CHANNELS, ids=lambda kind: kind.name)
 def test_a_channel_of_any_kind_is_read(kind):
     opened = still_document(bar_picture())
     bar = replace(opened.layers[0], name="bar")

@@ -255,7 +255,12 @@ def group_at(others: Sequence[Layer], index: int, layer: Layer) -> str:
 
 
 def _without_references_to(layer: Layer, other: int) -> Layer:
-    """Return a layer without attachment and draw order keys that refer to another layer."""
+    """Return a layer without attachments, draw order keys and drivers of another layer."""
+    sliders = tuple(
+        replace(each, driver=None) if each.driver == other else each for each in layer.sliders
+    )
+    if sliders != layer.sliders:
+        layer = replace(layer, sliders=sliders)
     joints = tuple(joint for joint in layer.attachments if joint.parent != other)
     if joints != layer.attachments:
         layer = replace(layer, attachments=joints)

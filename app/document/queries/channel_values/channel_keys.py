@@ -119,7 +119,7 @@ def describe_channel(document: Document, channel: Channel[Any]) -> str:
         if isinstance(channel.part, int):
             names = {handle.id: handle.name for handle in layer.handles}
             owner = names.get(channel.part, owner)
-    label = _(channel.kind.label)
+    label = str(channel.part) if channel.kind.of_sliders else _(channel.kind.label)
     return label if owner is None else _(OF_LAYER).format(channel=label, owner=owner)
 
 

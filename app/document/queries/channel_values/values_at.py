@@ -1,7 +1,7 @@
 """Camera, transform, opacity and draw order at a frame."""
 
 from bisect import bisect_right
-from typing import Any, TypeVar, cast
+from typing import Any, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from app.document.channels.kinds import (
     CAMERA,
     DRAW_ORDER,
     OPACITY,
+    SLIDER,
     SWITCH,
     TRANSFORM,
     VISIBILITY,
@@ -31,9 +32,20 @@ from app.document.queries.channel_values.repeats import (
 from app.document.queries.layers.clipping import clip_stacks
 from app.document.queries.layers.visibility import is_visible
 from app.document.queries.tangents import KeySequence, TangentSegment, sample_segment
+from app.document.settings import FrameRange
 from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 V = TypeVar("V")
+
+
+class Timeline(Protocol):
+    """What the time between keys depends on: a document, or a clip of it."""
+
+    @property
+    def frames(self) -> FrameRange: ...
+
+    @property
+    def loop(self) -> bool: ...
 
 
 def camera_at(document: Document, frame: float) -> Camera | None:
@@ -46,10 +58,14 @@ def camera_at(document: Document, frame: float) -> Camera | None:
 
 
 def layer_value_at(
-    document: Document, layer: Layer, kind: ChannelKind[V], frame: float
+    document: Document,
+    layer: Layer,
+    kind: ChannelKind[V],
+    frame: float,
+    part: int | str | None = None,
 ) -> V | None:
     """Return the value of an interpolated channel of a layer at a frame; None without keys."""
-    return interpolated_value(document, kind, layer.keys_of(kind), frame, layer.cycles)
+    return interpolated_value(document, kind, layer.keys_of(kind, part), frame, layer.cycles)
 
 
 def transform_at(document: Document, layer: Layer, frame: float) -> RigidMotion:
@@ -132,9 +148,8 @@ def value_at(document: Document, channel: Channel[V], frame: float) -> V:
     else:
         layer = document.layer(channel.layer or 0)
         if not kind.is_held:
-            value = layer_value_at(document, layer, kind, frame)
-            default = layer.opacity if kind is OPACITY else kind.default
-            found = default if value is None else value
+            value = layer_value_at(document, layer, kind, frame, channel.part)
+            found = unkeyed_value(layer, channel) if value is None else value
         elif kind is VISIBILITY:
             found = is_visible(document, layer, frame)
         else:
@@ -145,8 +160,15 @@ def value_at(document: Document, channel: Channel[V], frame: float) -> V:
     return cast(V, found)
 
 
+def unkeyed_value(layer: Layer, channel: Channel[Any]) -> Any:
+    """Return the value of an interpolated channel of a layer without keys."""
+    if channel.kind is SLIDER:
+        return layer.slider(str(channel.part)).value
+    return layer.opacity if channel.kind is OPACITY else channel.kind.default
+
+
 def interpolated_value(
-    document: Document,
+    timeline: Timeline,
     kind: ChannelKind[V],
     keys: tuple[Key[V], ...],
     frame: float,
@@ -156,10 +178,11 @@ def interpolated_value(
     if not keys:
         return None
     cycle = repeating_cycle(kind, keys, cycles)
-    frame, period = document.loop_frame(frame), document.frames.last - document.frames.first
+    frames, period = timeline.frames, timeline.frames.last - timeline.frames.first
+    frame = frames.wrap(frame) if timeline.loop else frame
     if cycle is not None:
-        frame, period = cycle.clamped_source_frame(frame, document.frames.last), cycle.period
-    period = period if document.loop or cycle is not None else 0
+        frame, period = cycle.clamped_source_frame(frame, frames.last), cycle.period
+    period = period if timeline.loop or cycle is not None else 0
     return kind.join(*(_component_at(keys, each, frame, period) for each in kind.components))
 
 

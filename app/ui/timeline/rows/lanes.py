@@ -85,7 +85,7 @@ def name_lane(layer: Layer | None, lane: ChannelLane) -> str:
     channel = lane.channel
     if layer is not None and lane.track is not None:
         return format_track_name(layer, lane.track)
-    name = _(channel.kind.label)
+    name = str(channel.part) if channel.kind.of_sliders else _(channel.kind.label)
     if layer is None or not isinstance(channel.part, int):
         return name
     return f"{name}: {layer.handle(channel.part).name}"

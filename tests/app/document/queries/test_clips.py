@@ -9,7 +9,10 @@ from documents import altered, disc_document
 from app.document import (
     DEPTH,
     LAYER_KINDS,
+    SLIDER,
     TRANSFORM,
+    Slider,
+    SliderPose,
     Transform,
     key_commands,
 )
@@ -27,6 +30,8 @@ from engine.maps.bounds import Bounds
 DOCUMENT = disc_document()
 for place in (80 + 100j, 120 + 100j):
     DOCUMENT = handle_commands.add_handle(0, place)(DOCUMENT)
+POSES = tuple(SliderPose(at=complex(at), pose=None) for at in (0, 1))
+DOCUMENT = altered(DOCUMENT, sliders=(Slider(name="turn", poses=POSES),))
 DOCUMENT = replace(DOCUMENT, groups=(Group(name="all"),))
 POSE = DOCUMENT.layers[0].keys[0].pose
 UNSEEN = {
@@ -52,6 +57,7 @@ STILL_CHANNELS = {
 MOVING_CHANNELS = {
     (TRANSFORM, None): (TRANSFORM.key(4, Transform(shift=3j)),),
     (DEPTH, 0): (DEPTH.key(4, 0.5),),
+    (SLIDER, "turn"): (SLIDER.key(4, 0.5 + 0j),),
 }
 SEEN = {
     "bones": (Bone(ends=(0, 1)),),

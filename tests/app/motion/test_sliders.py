@@ -1,0 +1,151 @@
+"""Pose sliders in the motion of layers: exact poses, pins, limits, tracks on top, certificates."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from still_poses import animate, dragged, drawing, posed, with_layer
+
+from app.document import (
+    SLIDER,
+    FrameRange,
+    Keyframe,
+    LibraryPose,
+    Slider,
+    SliderPose,
+    Track,
+    TrackKey,
+    Variant,
+    clip_of,
+    rest_pose,
+)
+from app.motion import trace_paths
+from app.motion.inbetweens.frame_corrector import have_same_base_frames
+from app.reports import Verdict, certify_clip
+from app.solving import Rig, fit_shown_pose
+from engine.maps import Bounds
+
+MOVED = {"up": 1, "down": 2}  # moves of the blob's top; its other handles stay
+PINNED = {"left", "middle", "right"}
+TOP = 3
+
+
+def slider(*places, **changes):
+    poses = tuple(SliderPose(at=complex(at), pose=pose) for at, pose in places)
+    return Slider(name="nod", poses=poses, **changes)
+
+
+NOD = slider((-1, "down"), (0, None), (1, "up"))
+
+
+@cache
+def slid(*values, document=None, slider=NOD, **changes):
+    """A document whose slider has these values at frames 10 apart."""
+    document = document or replace(drawing(), frames=FrameRange(0, 40))
+    library = tuple(LibraryPose(name=name, pose=dragged(number)) for name, number in MOVED.items())
+    keys = tuple(SLIDER.key(10 * number, complex(value)) for number, value in enumerate(values))
+    channels = {(SLIDER.name, "nod"): keys}
+    return with_layer(document, library=library, sliders=(slider,), channels=channels, **changes)
+
+
+def positions(document, frame):
+    return animate(document).frame(frame).positions
+
+
+def image(document, number):
+    layer = document.layers[0]
+    points = np.append([each.position for each in layer.handles], layer.domain.outline)
+    return layer.map_of(dragged(number))(points) if number else points
+
+
+@pytest.mark.parametrize("variant", [Variant.METRIC, Variant.NU])
+def test_slider_shows_its_poses_exactly(variant):
+    document = slid(-1, 0, 1, variant=variant)
+    for frame, number in ((0, 2), (10, 0), (20, 1)):
+        expected = image(document, number)
+        assert_allclose(positions(document, frame), expected, rtol=0, atol=1e-9)
+
+
+def test_slider_holds_handles_that_its_poses_do_not_move():
+    document = slid(-1, 1, 1.3)
+    handles = document.layers[0].handles
+    held = [number for number, handle in enumerate(handles) if handle.name in PINNED]
+    rest = np.array([handle.position for handle in handles])
+    for frame in (0, 3, 7, 14, 20):
+        found = positions(document, frame)[: len(rest)]
+        # The poses themselves miss their targets by up to 0.054 px.
+        assert_allclose(found[held], rest[held], rtol=0, atol=0.1)
+    assert abs(found[TOP] - rest[TOP]) > 5
+
+
+def test_slider_lets_free_handles_follow_the_shape():
+    document = slid(-1, 1)
+    free = tuple(replace(handle, is_unpinned=True) for handle in document.layers[0].handles)
+    loose = with_layer(document, handles=free)
+    assert np.abs(positions(loose, 3) - positions(document, 3)).max() > 0.01
+
+
+def test_sliders_add_to_the_motion_of_keys():
+    keys = (Keyframe(frame=0, pose=dragged(0)), Keyframe(frame=20, pose=dragged(3)))
+    document = slid(0, 0, 1, document=with_layer(posed(3), keys=keys))
+    plain = with_layer(document, sliders=(), channels={})
+    assert_allclose(positions(document, 7), positions(plain, 7), rtol=0, atol=1e-9)
+    top = positions(document, 20)[TOP] - positions(plain, 20)[TOP]
+    assert 0.3 < abs(top) / abs(12 + 6j) < 2
+
+
+def test_slider_frames_keep_tight_limits():
+    document = slid(-1.3, 1.3, bounds=Bounds(k=0.1, sigma_a=1.1, sigma_b=0.9))
+    motion = animate(document)
+    frames = [motion.frame(frame) for frame in (0, 3, 10)]
+    assert max(frame.k.max() for frame in frames) < 0.1003
+    assert max(frame.sigma_a.max() for frame in frames) < 1.1033
+    assert min(frame.sigma_b.min() for frame in frames) > 0.8973
+    assert motion.base.sliders.solution_at(0).curbed > 0
+
+
+def test_tracks_act_on_top_of_sliders():
+    document = slid(-1, 1)
+    keys = tuple(TrackKey(frame=f, place=place) for f, place in ((0, 0j), (5, 4 + 2j), (10, 0j)))
+    tracked = with_layer(document, tracks=(Track(handles=(0,), keys=keys),))
+    moved = positions(tracked, 5)[0] - positions(document, 5)[0]
+    assert abs(moved) == pytest.approx(abs(4 + 2j), abs=0.05)
+    assert not have_same_base_frames(clip_of(document, 0), clip_of(slid(0, 1), 0))
+
+
+def test_motion_paths_follow_sliders():
+    document = slid(-1, 1)
+    paths = trace_paths(clip_of(document, 0))
+    assert_allclose(paths.positions[10], positions(document, 10)[:4], rtol=0, atol=1e-9)
+    assert abs(paths.positions[10][TOP] - paths.positions[0][TOP]) > 10
+
+
+def test_certificates_measure_frames_with_sliders():
+    report = certify_clip(clip_of(slid(-1, 1), 0))
+    assert report.verdict is Verdict.MEASURED
+    assert report.corrected.slid == report.corrected.frames > 8
+    assert report.corrected.proven == 0
+    assert certify_clip(clip_of(slid(0, 0), 0)).verdict is Verdict.PROVEN
+
+
+def test_drags_begin_without_sliders():
+    document = slid(1, 1)
+    layer = document.layers[0]
+    pose = fit_shown_pose(Rig.of(layer), clip_of(document, 0), 5)
+    assert_allclose(pose.phi, rest_pose(layer.domain, layer.handles).phi, rtol=0, atol=1e-9)
+
+
+def test_pad_blends_poses_of_a_grid():
+    corners = ((0, None), (1, "up"), (1j, "down"), (1 + 1j, "up"))
+    pad = slider(*corners)
+    document = slid(1j, 0.5 + 0.5j, slider=pad)
+    assert_allclose(positions(document, 0), image(document, 2), rtol=0, atol=1e-9)
+    assert len(animate(document).base.sliders.solution_at(10).weights) == 3
+
+
+def test_drawing_is_unchanged_without_sliders():
+    assert clip_of(drawing(), 0).sliders == ()
+    off = slid(1, 1, slider=replace(NOD, enabled=False))
+    assert_allclose(positions(off, 5), image(off, 0), rtol=0, atol=1e-9)
