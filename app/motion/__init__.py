@@ -34,6 +34,7 @@ from app.motion.inbetweens.frame_corrector import (
     needs_correction as needs_correction,
 )
 from app.motion.inbetweens.pose_sampler import PoseSampler as PoseSampler
+from app.motion.inbetweens.slider_stage import apply_correction as apply_correction
 from app.motion.inbetweens.spring_offsets import ParentMotion as ParentMotion
 from app.motion.layer_frame import (
     LayerFrame as LayerFrame,

@@ -50,9 +50,11 @@ class CorrectedFrames:
     def _take_over(self, earlier: "CorrectedFrames") -> None:
         """Take the frames of an earlier clip as replacements."""
         if have_same_base_frames(self.clip, earlier.clip):
-            self._grounds, self._latest = earlier._grounds, earlier._latest  # noqa: SLF001 - its own
+            self._grounds = earlier._grounds  # noqa: SLF001 - its own
+        if have_same_base_frames(self.clip, earlier.clip, values=False):
+            self._latest = earlier._latest  # noqa: SLF001
             if earlier._corrections is not None:  # noqa: SLF001
-                self._corrections = earlier._corrections.with_tracks(self.clip)  # noqa: SLF001
+                self._corrections = earlier._corrections.with_values(self.clip)  # noqa: SLF001
         # Corrections are functions of their own domain.
         if self._is_asked and earlier.clip.layer.domain is self.clip.layer.domain:
             self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001
@@ -167,12 +169,13 @@ class CorrectedFrames:
         `is_newest` marks the frame that is displayed.
         """
         clip = found.corrections.clip
-        if not have_same_base_frames(self.clip, clip):
+        if not have_same_base_frames(self.clip, clip, values=False):
             return
         if self._corrections is None:
-            self._corrections = found.corrections.with_tracks(self.clip)
-        for frame, ground in found.base_frames.items():
-            self._grounds.setdefault(frame, ground)
+            self._corrections = found.corrections.with_values(self.clip)
+        if have_same_base_frames(self.clip, clip):
+            for frame, ground in found.base_frames.items():
+                self._grounds.setdefault(frame, ground)
         (self._exact if clip == self.clip else self._rough).update(found.exact)
         for each in found.exact.values() if is_newest else ():
             self._latest = each

@@ -32,6 +32,7 @@ from app.motion.inbetweens.frame_corrector import needs_correction
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.motion.inbetweens.segment_keys import SegmentKey, segment_key
+from app.motion.inbetweens.slider_stage import apply_correction
 from app.motion.vertices import StreamedVertices, VertexArray, Vertices
 from engine.arrays import Complexes
 from engine.interpolation import Inbetweens, InteriorKnot
@@ -132,10 +133,10 @@ class InbetweenCache:
             if known is None or not isinstance(known.inbetweens, Inbetweens):
                 return None
             inbetweens, time = known.inbetweens, moment.weight
-        # In-betweens of an earlier anchor were computed along other paths.
-        is_own = inbetweens.sampled_domain is sampler.sites
-        basis = sampler.basis if is_own else None
-        moved = inbetweens.with_correction(correction.series, basis).frame(time)
+        if inbetweens.sampled_domain is not sampler.sites:
+            # In-betweens of an earlier anchor were computed along other paths.
+            sampler = PoseSampler(sampler.domain, anchor=clip.layer.anchor, sibling=sampler)
+        moved = apply_correction(clip, sampler, inbetweens, time, correction).frame(time)
         triangles = self.mesh.order.triangles(clip, frame)
         return VertexArray(positions=moved.positions, triangles=triangles)
 

@@ -111,27 +111,22 @@ def report_corrected(
         [boundary.points, *(boundary.points * (1 - s) + ends * s for s in BETWEEN)]
     )
     animation = Animation(clip, variant, points=points, carried=carried)
-    tracks, sliders = animation.corrections, animation.base.sliders
-    if tracks is None and sliders is None:
+    if animation.corrections is None:
         return None
     acting, counts = acting_frames(clip, is_carried=carried is not None)
-    step = _step(len(acting), 0 if tracks is None else tracks.run_up)
+    step = _step(len(acting), animation.corrections.run_up)
     looked_at = acting[::step].tolist()
-    corrections = {
-        frame: None if tracks is None else tracks.correction_at(frame) for frame in looked_at
-    }
-    slid = {} if sliders is None else {f: sliders.solution_at(f) for f in looked_at}
-    changed = [frame for frame, each in corrections.items() if each is not None or frame in slid]
+    corrections = {frame: animation.corrections.correction_at(frame) for frame in looked_at}
     found = {frame: each for frame, each in corrections.items() if each is not None}
     repeats = dict(zip(looked_at, counts[::step].tolist(), strict=True))
     # Equal frames are examined once.
     same = {
         frame: (
-            id(corrections[frame]),
+            id(found[frame].series),
             slider_weights_at(clip, frame),
             segment_time_at(clip, frame),
         )
-        for frame in changed
+        for frame in found
     }
     once = {each: frame for frame, each in reversed(same.items())}
     proofs = {at: _proven(animation, frame) for at, frame in once.items()}
@@ -140,7 +135,7 @@ def report_corrected(
     ]
     between = [frame + 0.5 for frame in once.values() if frame < clip.frames.last]
     return CorrectedReport(
-        frames=sum(repeats[frame] for frame in changed),
+        frames=sum(repeats[frame] for frame in found),
         proven=sum(repeats[frame] for frame, at in same.items() if proofs[at] is not None),
         points=len(points),
         reached=reduce(DistortionRange.joined, reached, NOTHING),
@@ -151,8 +146,8 @@ def report_corrected(
         short=_short(clip, step, {frame: each.target_errors for frame, each in found.items()}),
         looked_at=len(looked_at),
         left_out=len(acting) - len(looked_at),
-        slid=sum(repeats[frame] for frame in slid),
-        curbed=max((each.curbed for each in slid.values()), default=0.0),
+        slid=sum(repeats[frame] for frame, each in found.items() if each.sliders is not None),
+        curbed=max((each.sliders.curbed for each in found.values() if each.sliders), default=0.0),
     )
 
 
@@ -168,7 +163,7 @@ def _proven(animation: Animation, frame: int) -> DistortionRange | None:
     """Return the proof of a corrected frame; None if there is no proof against folding."""
     corrections = animation.corrections
     correction = None if corrections is None else corrections.correction_at(frame)
-    if correction is None or animation.base.sliders is not None:
+    if correction is None or correction.series is None or correction.sliders is not None:
         return None
     inbetweens, time = animation.base.unslid_at(frame)
     proof = prove(inbetweens.with_correction(correction.series, animation.sampler.basis), time)

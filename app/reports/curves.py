@@ -8,10 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document import Clip, DistortionRange, clip_segments, pose_segments
-from app.motion import AnyInbetweens, CorrectedFrames, MeshFrame
+from app.motion import (
+    AnyInbetweens,
+    CorrectedFrames,
+    MeshFrame,
+    PoseSampler,
+    apply_correction,
+)
 from app.storage import write_atomically
 from engine.arrays import Floats
-from engine.interpolation import Frame, Inbetweens, SpanBasis
+from engine.interpolation import Frame, Inbetweens
 from engine.maps import distortion
 
 POINTS = 100
@@ -46,13 +52,10 @@ class Curves:
 
 
 class CorrectedSample(NamedTuple):
-    """Corrections of whole frames at some points, for handles with tracks and springs.
-
-    `basis` is at the nodes of the in-betweens.
-    """
+    """Corrections of whole frames at the points of a sampler, by sliders, tracks and springs."""
 
     frames: CorrectedFrames
-    basis: SpanBasis
+    sampler: PoseSampler
 
     def frame(
         self, clip: Clip, frame: int, between: AnyInbetweens, time: float
@@ -61,7 +64,7 @@ class CorrectedSample(NamedTuple):
         correction = self.frames.at(clip, frame)
         if correction is None or not isinstance(between, Inbetweens):
             return between.frame(time)
-        return between.with_correction(correction.series, self.basis).frame(time)
+        return apply_correction(clip, self.sampler, between, time, correction).frame(time)
 
 
 def measure_curves(

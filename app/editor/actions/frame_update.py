@@ -488,7 +488,7 @@ def _measure(session: Session, project: Project) -> Iterator[Job]:
         if inbetweens and (own is None or own.is_whole):
             at = None
             if own is not None and store.sampler is not None:
-                at = CorrectedSample(own, store.sampler.basis)
+                at = CorrectedSample(own, store.sampler)
             measure = partial(measure_curves, clip, inbetweens, at)
             yield from _derive(session, MEASURING, curves, clip, measure)
 

@@ -4,20 +4,21 @@ from app.document import Clip, Variant
 from app.motion.inbetweens.frame_corrector import FrameCorrector, needs_correction
 from app.motion.inbetweens.keyframe_motion import KeyframeMotion
 from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.slider_stage import apply_correction
 from app.motion.inbetweens.spring_offsets import ParentMotion
 from engine.arrays import Complexes
 from engine.interpolation import Frame
 
 
 class Animation:
-    """The motion of a clip at a sampler's points, with tracks and springs.
+    """The motion of a clip at a sampler's points, with sliders, tracks and springs.
 
     The variant is by default the layer's own, and the points, complex128 (m,), are the vertices of
     the domain's mesh. An earlier sampler is reused if its domain and anchor are the layer's.
     `carried` returns the rigid motion of the layer at a frame, for scene-space tracks, by default
     the identity.
 
-    `base` is the motion with auto-pins, without tracks and springs.
+    `base` is the motion with auto-pins and sliders, without tracks and springs.
     """
 
     def __init__(
@@ -46,7 +47,7 @@ class Animation:
 
     @property
     def corrections(self) -> FrameCorrector | None:
-        """Corrections of the base motion; None without tracks and springs."""
+        """Corrections of the base motion; None without sliders, tracks and springs."""
         if self._corrections is None and self._is_corrected:
             self._corrections = FrameCorrector(self.clip, self.variant, self.sampler, self.carried)
         return self._corrections
@@ -60,5 +61,6 @@ class Animation:
         correction = None if self.corrections is None else self.corrections.correction_at(frame)
         if correction is None:
             return self.base.frame(frame)
-        inbetweens, time = self.base.segment_at(frame)
-        return inbetweens.with_correction(correction.series, self.sampler.basis).frame(time)
+        inbetweens, time = self.base.unslid_at(frame)
+        found = apply_correction(self.clip, self.sampler, inbetweens, time, correction)
+        return found.frame(time)

@@ -1,4 +1,4 @@
-"""Corrections of a clip's frames by springs and tracks.
+"""Changes of a clip's frames by sliders, springs and tracks.
 
 Each frame is computed alone and cached by its content. Undo, copied keys and other windows of the
 same layer thus find earlier results.
@@ -7,6 +7,7 @@ same layer thus find earlier results.
 import threading
 from collections.abc import Callable, Iterable
 from copy import copy
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -49,26 +50,30 @@ class BaseMotionFrame(NamedTuple):
     rotations: Complexes
 
 
-def have_same_base_frames(clip: Clip, other: Clip) -> bool:
-    """Return whether two clips of a layer differ at most in tracks."""
+def have_same_base_frames(clip: Clip, other: Clip, *, values: bool = True) -> bool:
+    """Return whether two clips of a layer differ at most in tracks.
+
+    Without `values`, they may also differ in values of sliders.
+    """
 
     def source(of: Clip) -> tuple[object, ...]:
         layer = of.layer
+        own = of.sliders if values else tuple(each.slider.name for each in of.sliders)
         return (
             *(layer.id, layer.domain, layer.handles, layer.keys, layer.cycles, layer.anchor),
             *(layer.attachments, layer.has_auto_pins, layer.springs, layer.variant, layer.bounds),
             *(stiffness_source(layer), layer.bones),
-            *(of.frames, of.loop, of.fps, of.baseline, of.parents, of.sliders, slider_poses(of)),
+            *(of.frames, of.loop, of.fps, of.baseline, of.parents, own, slider_poses(of)),
         )
 
     return source(clip) == source(other)
 
 
 def needs_correction(clip: Clip) -> bool:
-    """Return whether tracks or springs may change frames of a clip."""
+    """Return whether sliders, tracks or springs may change frames of a clip."""
     layer = clip.layer
     own = [each.enabled for each in layer.tracks] + [each.enabled for each in layer.springs]
-    return clip.baseline is None and any(own)
+    return clip.baseline is None and (any(own) or bool(clip.sliders))
 
 
 class FrameCorrector:
@@ -87,7 +92,7 @@ class FrameCorrector:
         carried: ParentMotion | None = None,
     ) -> None:
         layer = clip.layer
-        self.clip, self._variant = clip, variant
+        self.clip, self._variant, self._carried = clip, variant, carried
         self._known, self._guard = sampler.known.corrections, sampler.known.guard
         self._lock = threading.RLock()
         self._is_anchored = layer.has_parent and layer.anchor is not None
@@ -111,13 +116,18 @@ class FrameCorrector:
     def correction_at(self, frame: float) -> SecondaryCorrection | None:
         """Return the correction at a frame; None without one."""
         with self._lock:
+            stage = self._motion.sliders
+            sliders = None if stage is None else stage.solution_at(frame)
+            alone = None if sliders is None else SecondaryCorrection(sliders=sliders)
             if not self._own.is_active(frame):
-                return None
+                return alone
             base, count = self._base(frame), len(self._points)
             # Passed here and not stored: a stored bound method would be a reference cycle, and the
             # object would outlive its last user.
             wanted = self._own.targets_at(frame, base.places[:count], base.fz[:count], self._places)
-            return None if wanted is None else self._solve_correction(frame, base, wanted)
+            if wanted is None:
+                return alone
+            return replace(self._solve_correction(frame, base, wanted), sliders=sliders)
 
     @property
     def run_up(self) -> int:
@@ -129,11 +139,14 @@ class FrameCorrector:
         """Bytes of the data from which frames are computed."""
         return self._motion.nbytes + self._motion.sampler.extension_bytes
 
-    def with_tracks(self, clip: Clip) -> "FrameCorrector":
-        """Return the corrections of a clip that differs only in its tracks."""
+    def with_values(self, clip: Clip) -> "FrameCorrector":
+        """Return the corrections of a clip that differs only in tracks and values of sliders."""
         changed = copy(self)
         changed.clip = clip
         changed._own = self._own.with_tracks(clip)  # noqa: SLF001 - its own
+        if clip.sliders != self.clip.sliders:
+            changed._motion = self._motion.with_sliders(clip)  # noqa: SLF001
+            changed._own = SecondaryMotion(clip, self._carried)  # noqa: SLF001
         return changed
 
     def base_frame_at(self, frame: float) -> BaseMotionFrame:

@@ -1,6 +1,7 @@
 """The motion of a clip from key to key, with sliders, before tracks and springs."""
 
 from collections.abc import Callable
+from copy import copy
 
 from app.document import Clip, Pose, Variant, keyed_pose_at, segment_time_at
 from app.motion.inbetweens.auto_pins import AutoPins
@@ -41,6 +42,13 @@ class KeyframeMotion:
         sampler.keep_only(used | {key.pose for key in clip.keys})
         # By number, in the order of last use, with sizes in bytes.
         self._prepared: dict[int | Pose, tuple[Inbetweens, int]] = {}
+
+    def with_sliders(self, clip: Clip) -> "KeyframeMotion":
+        """Return the motion of a clip that differs only in values of sliders."""
+        changed = copy(self)
+        changed.clip = clip
+        changed.sliders = None if self.sliders is None else self.sliders.with_values(clip)
+        return changed
 
     @property
     def nbytes(self) -> int:

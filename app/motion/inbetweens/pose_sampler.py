@@ -38,7 +38,7 @@ from engine.interpolation import (
 )
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
-from engine.sliders import FrameSolution, FrameSolver
+from engine.sliders import FrameSolution, FrameSolver, SliderPoses
 
 # Caches of sampled outlines and keyframes, in bytes. Values that layers hold take no additional
 # memory here. Transforms are the slowest to compute, so they have a cache of their own.
@@ -291,6 +291,15 @@ class PoseSampler:
     def inbetweens_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a segment; motion through smooth keys keeps the limits."""
         return self._prepared(self.segment_of(segment, bounds, variant), variant)
+
+    def slider_poses(self, poses: Sequence[Pose], turns: Indices) -> SliderPoses:
+        """Return poses of sliders with their full turns here, cached by content."""
+        content = digest(turns, *(each for p in poses for each in (p.phi, p.psi, p.logs)))
+
+        def make() -> SliderPoses:
+            return SliderPoses.of([self.samples(pose) for pose in poses], turns, self.sites)
+
+        return _SAMPLED.find(("slider poses", *self._content, content), make, _nbytes)
 
     def slider_solver(
         self,

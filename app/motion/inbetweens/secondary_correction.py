@@ -1,16 +1,22 @@
-"""Correction of a frame by tracks and springs."""
+"""The change of a frame by sliders, tracks and springs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from engine.arrays import nbytes_of
 from engine.interpolation import CorrectionSeries
+from engine.sliders import FrameSolution
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SecondaryCorrection:
-    """The correction of a frame that brings handles with tracks and springs to their targets."""
+    """Sliders of a frame, and the correction that brings handles to targets of tracks and springs.
 
-    series: CorrectionSeries  # constant in time: the correction of this frame
+    `sliders` come first.
+    """
+
+    sliders: FrameSolution | None = None
+    series: CorrectionSeries | None = None  # constant in time: the correction of this frame
     # In pixels by handle id, for handles with tracks.
     target_errors: Mapping[int, float] = field(default_factory=dict)
     targets: Mapping[int, complex] = field(default_factory=dict)  # of the same handles
@@ -25,4 +31,4 @@ class SecondaryCorrection:
     @property
     def nbytes(self) -> int:
         """Memory of the functions in bytes."""
-        return self.series.h.nbytes + self.series.q.nbytes
+        return nbytes_of((self.sliders, self.series))

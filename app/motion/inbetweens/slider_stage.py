@@ -1,17 +1,19 @@
 """The sliders of a clip, on top of its motion from key to key."""
 
 from collections.abc import Callable
+from copy import copy
 
 import numpy as np
 
 from app.document import Clip, Layer, Pose, Variant, slider_poses, slider_weights_at
 from app.motion.inbetweens.auto_pins import BESIDE
 from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.motion.inbetweens.segment_keys import frame_content
-from engine.arrays import Complexes
+from engine.arrays import Complexes, Indices
 from engine.geometry import diameter
 from engine.interpolation import Inbetweens
-from engine.sliders import FrameSolution, FrameSolver, SliderFrame, SliderPoses
+from engine.sliders import FrameSolution, FrameSolver, SliderFrame
 
 UNMOVED = 0.5  # pixels between a target in a pose and the handle at rest
 
@@ -35,22 +37,25 @@ class SliderStage:
         base_of: Callable[[PoseSampler], BaseAt],
     ) -> None:
         self.clip, self._variant, self._sampler, self._base_of = clip, variant, sampler, base_of
-        named = slider_poses(clip)
-        self.poses = tuple(pose for pose, _ in named)
-        self._turns = np.array([turns for _, turns in named], dtype=np.intp)
-        self._prepared: tuple[SliderPoses, FrameSolver, BaseAt] | None = None
+        self._prepared: tuple[FrameSolver, BaseAt] | None = None
+
+    def with_values(self, clip: Clip) -> "SliderStage":
+        """Return the stage of a clip that differs only in values of sliders."""
+        changed = copy(self)
+        changed.clip = clip
+        return changed
+
+    @property
+    def poses(self) -> tuple[Pose, ...]:
+        return _poses(self.clip)[0]
 
     def frame(self, base: Inbetweens, time: float, frame: float) -> SliderFrame:
         """Add the sliders at a frame to an in-between of the sampler at a time."""
-        sampler, solution = self._sampler, self.solution_at(frame)
-        poses, _, _ = self._prepare()
-        extension = None if solution.densities is None else sampler.extension
-        basis = None if solution.h is None else sampler.basis
-        return poses.add_to(base, time, solution, extension, basis)
+        return add_sliders(self.clip, self._sampler, base, time, self.solution_at(frame))
 
     def solution_at(self, frame: float) -> FrameSolution:
         """Return the curbed weights of a frame, and how strongly they are curbed."""
-        _, solver, base_at = self._prepare()
+        solver, base_at = self._prepare()
 
         def solve() -> FrameSolution:
             inbetweens, time = base_at(frame)
@@ -60,17 +65,15 @@ class SliderStage:
         key = solver, frame_content(self.clip, frame, self._variant)
         return self._sampler.known.slider_solution(key, solve)
 
-    def _prepare(self) -> tuple[SliderPoses, FrameSolver, BaseAt]:
-        """Prepare the poses at the points, the solver, and the in-betweens where it needs them."""
+    def _prepare(self) -> tuple[FrameSolver, BaseAt]:
+        """Prepare the solver, and the in-betweens where it needs them."""
         if self._prepared is None:
-            layer, sampler = self.clip.layer, self._sampler
-            samples = [sampler.samples(pose) for pose in self.poses]
-            poses = SliderPoses.of(samples, self._turns, sampler.sites)
+            (poses, turns), layer, sampler = _poses(self.clip), self.clip.layer, self._sampler
             solver = sampler.slider_solver(
-                self.poses,
-                self._turns,
+                poses,
+                turns,
                 layer.bounds,
-                _pins(layer, self.poses, sampler.sites.anchor),
+                _pins(layer, poses, sampler.sites.anchor),
                 is_anchored=layer.has_parent,
             )
             beside = PoseSampler(
@@ -80,8 +83,41 @@ class SliderStage:
                 values_at=solver.nodes,
                 sibling=sampler,
             )
-            self._prepared = poses, solver, self._base_of(beside)
+            self._prepared = solver, self._base_of(beside)
         return self._prepared
+
+
+def apply_correction(
+    clip: Clip,
+    sampler: PoseSampler,
+    inbetweens: Inbetweens,
+    time: float,
+    correction: SecondaryCorrection,
+) -> Inbetweens | SliderFrame:
+    """Return the in-betweens of a sampler, changed by a correction at a time."""
+    found: Inbetweens | SliderFrame = inbetweens
+    if correction.sliders is not None:
+        found = add_sliders(clip, sampler, inbetweens, time, correction.sliders)
+    if correction.series is not None:
+        found = found.with_correction(correction.series, sampler.basis)
+    return found
+
+
+def add_sliders(
+    clip: Clip, sampler: PoseSampler, base: Inbetweens, time: float, solution: FrameSolution
+) -> SliderFrame:
+    """Return an in-between of a sampler at a time with a solution of the clip's sliders."""
+    extension = None if solution.densities is None else sampler.extension
+    basis = None if solution.h is None else sampler.basis
+    poses = sampler.slider_poses(*_poses(clip))
+    return poses.add_to(base, time, solution, extension, basis)
+
+
+def _poses(clip: Clip) -> tuple[tuple[Pose, ...], Indices]:
+    """Return the poses of a clip's sliders, and their full turns."""
+    named = slider_poses(clip)
+    turns = np.array([turns for _, turns in named], dtype=np.intp)
+    return tuple(pose for pose, _ in named), turns
 
 
 def _pins(layer: Layer, poses: tuple[Pose, ...], anchor: complex) -> Complexes:

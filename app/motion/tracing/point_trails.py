@@ -31,8 +31,8 @@ class PointTrails:
     returns the rigid motion of the layer at a frame.
 
     `worked_out` counts computed times, without cached ones. The sampler is None until the first
-    computation. `known` has results by segment key and weight, or by clip and frame for clips with
-    tracks, springs or sliders.
+    computation. `known` has results by segment key and weight, or for corrected clips by clip and
+    frame.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class PointTrails:
         self.known: dict[tuple[object, float], TrailFrame] = {}
         self._sibling = sibling
         self._carried = carried
-        self._is_by_frame = needs_correction(clip) or bool(clip.sliders)
+        self._is_corrected = needs_correction(clip)
         self._animation: Animation | None = None
         if earlier is None:
             return
@@ -65,7 +65,7 @@ class PointTrails:
         moment = segment_time_at(self.clip, frame)
         resting = keyed_pose_at(self.clip, moment)
         key: tuple[object, float]
-        if self._is_by_frame:
+        if self._is_corrected:
             key = self.clip, frame
         elif resting is None:
             key = segment_key(self.clip, moment.segment), moment.weight

@@ -20,8 +20,10 @@ from app.document import (
     Variant,
     clip_of,
     rest_pose,
+    segment_keys,
 )
-from app.motion import trace_paths
+from app.motion import Animation, DeformMesh, InbetweenCache, evaluate_layer, trace_paths
+from app.motion.corrected_frames import CorrectedFrames
 from app.motion.inbetweens.frame_corrector import have_same_base_frames
 from app.reports import Verdict, certify_clip
 from app.solving import Rig, fit_shown_pose
@@ -149,3 +151,46 @@ def test_drawing_is_unchanged_without_sliders():
     assert clip_of(drawing(), 0).sliders == ()
     off = slid(1, 1, slider=replace(NOD, enabled=False))
     assert_allclose(positions(off, 5), image(off, 0), rtol=0, atol=1e-9)
+
+
+def store_of(document):
+    """Return a cache of the layer's in-betweens, as a window has it."""
+    clip = clip_of(document, 0)
+    store = InbetweenCache(mesh=DeformMesh.fine(clip.layer.domain))
+    store.add(store.segments_job(clip, range(len(segment_keys(clip))))())
+    return store
+
+
+def shown(document, frame, store, corrected, *, waits=True):
+    clip = clip_of(document, 0)
+    job = corrected.missing_here(document, frame, {0: store.sampler})
+    if waits and job is not None:
+        corrected.take(job(), is_newest=True)
+    return evaluate_layer(clip, frame, None, [store], None, corrected)
+
+
+@pytest.mark.parametrize("frame", [0, 4, 10])
+def test_window_shows_sliders_as_exports_do(frame):
+    keys = (Keyframe(frame=0, pose=dragged(0)), Keyframe(frame=20, pose=dragged(3)))
+    document = slid(-1.3, 1, document=with_layer(posed(3), keys=keys))
+    found = shown(document, frame, store_of(document), CorrectedFrames(clip_of(document, 0)))
+    assert found.is_current
+    exact = Animation(clip_of(document, 0)).positions(frame)
+    assert_allclose(found.positions, exact, rtol=0, atol=1e-3)
+
+
+def test_window_shows_earlier_values_until_a_dragged_slider_is_solved():
+    before, after, last = slid(-1, 1), slid(-1, 0.5), slid(-1, 0.4)
+    store, corrected = store_of(before), CorrectedFrames(clip_of(before, 0))
+    first = shown(before, 10, store, corrected)
+    corrected = CorrectedFrames(clip_of(after, 0), corrected)
+    job = corrected.missing_here(after, 10, {0: store.sampler})
+    waiting = shown(after, 10, store, corrected, waits=False)
+    assert not waiting.is_current
+    assert_allclose(waiting.positions, first.positions, rtol=0, atol=1e-3)
+    corrected = CorrectedFrames(clip_of(last, 0), corrected)
+    corrected.take(job(), is_newest=True)  # which comes after the next move of the hand
+    late = shown(last, 10, store, corrected, waits=False)
+    assert not late.is_current
+    exact = Animation(clip_of(after, 0)).positions(10)
+    assert_allclose(late.positions, exact, rtol=0, atol=1e-3)
