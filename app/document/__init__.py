@@ -99,6 +99,7 @@ from app.document.history.undo_history import (
 )
 from app.document.history.undo_step import (
     PreviewPose as PreviewPose,
+    UnfinishedStepError as UnfinishedStepError,
 )
 from app.document.keyframe import (
     MAX_REVOLUTIONS as MAX_REVOLUTIONS,

@@ -141,7 +141,9 @@ def cancel_deferred_action(project: Project) -> str | None:
 
 
 def deferred_label(project: Project) -> str:
-    """Return the label of the first waiting action; empty if there is none."""
+    """Return what waits for a pending change, for the status bar; empty if nothing does."""
+    if project.drag is not None and project.drag.is_awaited:
+        return project.drag.label
     if not project.pending.deferred:
         return ""
     text = _("{tasks}, then: {action}")

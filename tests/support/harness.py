@@ -210,13 +210,13 @@ class Harness:
         self.frames()
 
     def settle(self) -> None:
-        """Draw frames until no job is left, and no pose is on its way."""
+        """Draw frames until no job is left, no pose is on its way, and no action waits."""
         for _ in range(MOST_FRAMES):
             self.frames()
             project = self.session.project
             drag = project.drag if project else None
             is_at_rest = drag is None or (project.history.is_held and drag.is_at_rest)
-            if not self.session.jobs.kinds and is_at_rest:
+            if is_at_rest and not (self.session.jobs.kinds or self.program.shell.queue.waiting):
                 break
             assert self.session.jobs.wait_until_idle(PATIENCE), self.session.jobs.kinds
         self.frames()

@@ -1,10 +1,13 @@
 """Undo and redo, as frozen snapshots of the document that share unchanged values."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from math import inf
 
 from app.document.commands.command import Command
 from app.document.history.undo_step import (
+    OpenStep,
     PreviewPose,
     UndoStep,
     bytes_only_in,
@@ -15,26 +18,6 @@ from app.document.layer import PictureFile
 from app.document.model import Document
 
 HISTORY_BYTES = 512 * 1024 * 1024
-
-
-@dataclass(slots=True, kw_only=True, eq=False)
-class OpenStep:
-    """The displayed step of a gesture, until another change of the document commits it.
-
-    Attributes
-    ----------
-    gestures : set of object
-        Their commands extend the step.
-    is_held : bool
-        Whether the hand goes on with it.
-    finish : callable, optional
-        Extends the step to its final form before it is committed.
-    """
-
-    step: UndoStep
-    gestures: set[object]
-    is_held: bool = False
-    finish: Callable[[], None] | None = None
 
 
 class History:
@@ -55,6 +38,7 @@ class History:
         self._open: OpenStep | None = None
         # The gestures of the last step that ended while it was held.
         self._ended: frozenset[object] = frozenset()
+        self.patience = inf  # seconds for which a command may solve the open step
         self._saved = document if saved else None
         self._memory = memory
 
@@ -219,15 +203,23 @@ class History:
             self.revision += 1
             self._open.is_held, self._open.finish = False, None
 
+    @contextmanager
+    def limited(self, seconds: float) -> Iterator[None]:
+        """Let commands raise `UnfinishedStepError` if the open step is not final by then."""
+        self.patience = seconds
+        try:
+            yield
+        finally:
+            self.patience = inf
+
     def commit(self) -> None:
         """Make the open step final, as an undo step."""
         opened = self._open
         if opened is None:
             return
         self.interrupt()
-        finish, opened.finish = opened.finish, None
-        if finish is not None:
-            finish()
+        if opened.finish is not None:
+            opened.finish()
         # It may be cancelled if it has no final form.
         if self._open is opened:
             self._open = None

@@ -1,5 +1,6 @@
 """One step of undo: a frozen snapshot of the document, and the bytes that only it needs."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from app.document.commands.pose_commands import with_all_targets
@@ -28,6 +29,31 @@ class UndoStep:
     document: Document
     preview_pose: PreviewPose | None
     label: str
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class OpenStep:
+    """The displayed step of a gesture, until another change of the document commits it.
+
+    Attributes
+    ----------
+    gestures : set of object
+        Their commands extend the step.
+    is_held : bool
+        Whether the hand goes on with it.
+    finish : callable, optional
+        Extends the step to its final form before it is committed. May raise
+        `UnfinishedStepError` after the history's `patience`.
+    """
+
+    step: UndoStep
+    gestures: set[object]
+    is_held: bool = False
+    finish: Callable[[], None] | None = None
+
+
+class UnfinishedStepError(Exception):
+    """The open step is not final yet, and a command that must follow it has changed nothing."""
 
 
 def fit_preview_pose(

@@ -38,7 +38,11 @@ def edit_document(
     session: Session, project: Project, command: Command, *, gesture: object = None
 ) -> None:
     """Run a command; it is a preview until the end of a gesture, by default one use of a widget."""
-    project.history.preview(command, gesture or session.tools.widget_gesture)
+    widget = session.tools.widget_gesture
+    if gesture is None and not session.tools.is_widget_pressed:
+        project.history.do(command, gesture=widget)
+    else:
+        project.history.preview(command, gesture or widget)
     _forget_what_is_gone(project)
 
 
@@ -53,13 +57,6 @@ def edit_layer(
 ) -> None:
     """Run a command on the active layer."""
     edit_document(session, command(project.selection.active, *args, **kwargs))
-
-
-def note_widget_in_use(session: Session, widget: int) -> None:
-    """Note the number of the widget in use, 0 for none; one use of a widget is one undo step."""
-    if session.project is not None:
-        session.project.history.release(session.tools.widget_gesture)
-    session.tools.use_widget(widget)
 
 
 def _undo_text(session: Session, project: Project) -> str:

@@ -73,6 +73,7 @@ class ToolState(Revised):
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about the item under the pointer
     widget: int = 0  # number of the panel's widget in use; 0 for none
+    is_widget_pressed: bool = False
     # Commands of a single use of a widget are one undo step.
     widget_gesture: object | None = None
 
@@ -147,9 +148,11 @@ class ToolState(Revised):
     def show_hint(self, hint: str) -> None:
         self.hint = hint
 
-    def use_widget(self, widget: int) -> None:
-        """Note that another widget is in use, or none."""
-        self.widget, self.widget_gesture = widget, object() if widget else None
+    def use_widget(self, widget: int, *, is_pressed: bool) -> None:
+        """Note the widget in use, 0 for none, and whether the pointer presses it."""
+        if widget != self.widget:
+            self.widget, self.widget_gesture = widget, object() if widget else None
+        self.is_widget_pressed = is_pressed
 
     def reset(self) -> None:
         """Go back to posing, as for another project."""

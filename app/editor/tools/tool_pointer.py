@@ -69,6 +69,16 @@ def show_hint(session: Session, hint: str) -> None:
     session.tools.show_hint(hint)
 
 
+def note_widget_in_use(session: Session, widget: int, *, is_pressed: bool) -> None:
+    """Note the number of the widget in use, 0 for none, and whether the pointer presses it.
+
+    Commands of one use of a widget are one undo step.
+    """
+    if session.project is not None:
+        session.project.history.release(session.tools.widget_gesture)
+    session.tools.use_widget(widget, is_pressed=is_pressed)
+
+
 def note_space_used(session: Session) -> None:
     """Note that Space was held to pan the view, so that its release does not play."""
     session.tools.use_space(used=True)

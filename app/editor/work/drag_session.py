@@ -102,6 +102,8 @@ class DragSession(PendingChange):
     preview : Pose, optional
         The displayed pose: the newest one at the playhead. When the playhead leaves, it stays until
         the pose rests, so that the in-betweens stay the same.
+    is_awaited : bool
+        Whether a command waits until the pose rests.
     """
 
     label: str = _("Posing")
@@ -124,6 +126,7 @@ class DragSession(PendingChange):
     found: Pose | None = None
     newest: Pose | None = None
     preview: Pose | None = None
+    is_awaited: bool = False
 
     @property
     def layer(self) -> int:
@@ -141,6 +144,10 @@ class DragSession(PendingChange):
         """Set a gesture's translation of the whole layer from the start."""
         self._translate({**self.translations, gesture: way}, self.found or self.before)
         self.change_targets(gesture, _nothing)
+
+    def note_awaited(self) -> None:
+        """Note that a command waits until the pose rests."""
+        self.is_awaited, self.label = True, _("Finishing the pose. Esc stops it where it is")
 
     def take(self, pose: Pose) -> None:
         """Store the solver's pose, and the same with the translations."""

@@ -1,4 +1,4 @@
-"""The desktop: whether there is one, and the window's icon and name on it."""
+"""The desktop: whether there is one, and the window's title, icon and name on it."""
 
 import io
 import os
@@ -10,9 +10,11 @@ from PIL import Image
 
 import glfw  # isort: skip
 
+from app.editor import Session
+from app.errors import display_name
 from app.storage import app_icon
-from app.ui.window.title import NAME
 
+NAME = "Lissom"
 APPLICATION = "lissom"  # the name of the program's desktop entry
 ICON_SIDES = (16, 32, 64)  # pixels
 # Environment variables that name the display of X11 or Wayland.
@@ -22,6 +24,18 @@ DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 def has_display() -> bool:
     """Return whether the environment names a screen for the window."""
     return sys.platform != "linux" or any(map(os.environ.get, DISPLAYS))
+
+
+def window_title(session: Session) -> str:
+    """Return the name of the open project, with a star if it has unsaved changes."""
+    project = session.project
+    if project is None:
+        return NAME
+    name = (
+        display_name(project.file.path.name) if project.file.path is not None else project.file.name
+    )
+    mark = "" if project.history.is_saved else "*"
+    return f"{name}{mark} – {NAME}"
 
 
 def show_icon() -> None:

@@ -32,14 +32,13 @@ from app.ui.timeline import timeline
 from app.ui.viewport import viewport
 from app.ui.viewport.canvas import Canvas
 from app.ui.viewport.split_view import SplitTextures
-from app.ui.window.desktop import name_application, show_icon
+from app.ui.window.desktop import NAME, name_application, show_icon, window_title
 from app.ui.window.events.drag_and_drop import accept_files
 from app.ui.window.events.input_queue import InputQueue
 from app.ui.window.events.modifiers import release_stuck_modifiers
 from app.ui.window.exporter import Exporter
 from app.ui.window.guard import FrameStep
 from app.ui.window.memory import FreeMemory
-from app.ui.window.title import NAME, window_title
 from app.ui.window.window_frame import WindowFrame
 from engine.arrays import Bytes
 

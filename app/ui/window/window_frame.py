@@ -15,10 +15,10 @@ from app.editor import (
     error_reports,
     pending_changes,
 )
-from app.editor.actions import editing, frame_update, playback, tutorials, viewing
-from app.editor.actions.dialog_actions import close_dialog, dismiss_toast
-from app.editor.actions.project_files import autosaving, export_settings, saving
-from app.editor.actions.timing import timeline_drag
+from app.editor.actions import frame_update, playback, tutorials
+from app.editor.actions.dialog_actions import close_dialog
+from app.editor.actions.posing.pose_solver import stop_finishing_pose
+from app.editor.actions.project_files import autosaving, saving
 from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
@@ -32,6 +32,7 @@ from app.ui.panel import Panel, bring_to_front
 from app.ui.shortcuts.key_input import collect_key_actions
 from app.ui.shortcuts.table import MENUS
 from app.ui.style.theme import Look, interface_scale
+from app.ui.window.action_queue import ActionQueue
 from app.ui.window.appearance import Appearance
 from app.ui.window.docking import Docking
 from app.ui.window.guard import FrameStep, WindowPart
@@ -40,17 +41,6 @@ from app.ui.window.tutorial.card import Callout
 
 LEFT = imgui.MouseButton_.left
 MENU_BAR, STATUS_BAR, ICON_BAR = _("The menu bar"), _("The status bar"), _("The toolbar")
-# Actions that follow automatically in each frame, and not from the person.
-UNLOGGED = {
-    dismiss_toast,
-    editing.note_widget_in_use,
-    export_settings.preview_export_frame,
-    tool_pointer.show_hint,
-    tool_pointer.hover_handle,
-    timeline_drag.scroll_to_playhead,
-    viewing.focus_timeline,
-    viewing.set_viewport_size,
-}
 
 
 class WindowFrame:
@@ -73,6 +63,7 @@ class WindowFrame:
         self._seen: dict[str, tuple[ImVec2, ImVec2]] = {}
         self._actions: list[Action] = []
         self._asked: list[Action] = []
+        self.queue = ActionQueue(session, self._report_error)
         self._pace = FramePace()
         previews = welcome.Previews(thumbnail, moments)
         over = (
@@ -210,7 +201,10 @@ class WindowFrame:
         return self.callout.draw(session, look, places=self._seen)
 
     def _collect_key_actions(self) -> None:
-        self._actions += collect_key_actions(self.session)
+        if self.queue.waiting and imgui.is_key_pressed(imgui.Key.escape):
+            stop_finishing_pose(self.session)
+        else:
+            self._actions += collect_key_actions(self.session)
 
     def _begin_frame(self) -> None:
         session, project = self.session, self.session.project
@@ -233,18 +227,16 @@ class WindowFrame:
         for name in self._over:
             self._ask(name)
         # A pressed pointer without a widget counts as a widget.
-        widget = imgui.internal.get_active_id() or int(imgui.is_mouse_down(LEFT))
-        project = self.session.project
-        if project is not None and widget != self.session.tools.widget:
-            self._actions.append(do(editing.note_widget_in_use, widget))
+        is_pressed, tools = imgui.is_mouse_down(LEFT), self.session.tools
+        widget = imgui.internal.get_active_id() or int(is_pressed)
+        is_known = (widget, is_pressed) == (tools.widget, tools.is_widget_pressed)
+        if self.session.project is not None and not is_known:
+            self._actions.append(do(tool_pointer.note_widget_in_use, widget, is_pressed=is_pressed))
 
     def _apply_actions(self) -> None:
         # Panels' actions first: a drop depends on the pointer they saw.
         actions, self._actions, self._asked = self._actions + self._asked, [], []
-        for action in actions:
-            if action.verb not in UNLOGGED:
-                self.session.diagnostics.log_action(action.name)
-            self.run_guarded(partial(action.apply, self.session))
+        self.queue.apply(actions)
         if self.session.display.panel_to_focus:
             bring_to_front(self.session.display.panel_to_focus)
             self.session.display.focus_panel("")

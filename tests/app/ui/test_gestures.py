@@ -3,13 +3,14 @@
 from dataclasses import dataclass, field
 
 import pytest
-from bars import BENT
+from bars import BENT, check_at_rest, drag_bar
 from documents import differences
 from imgui_bundle import imgui
 
 from app.document import OPACITY, Channel, pose_channel, scene_commands
 from app.editor import pending_changes
 from app.editor.actions import editing, playback
+from app.editor.actions.posing.pose_solver import POSING, finish_drag
 from app.editor.actions.project_files import saving
 from app.editor.actions.timing import channel_keys, timeline_drag, tracks
 from app.editor.actions.tracking.track_dragging import drag_track_handle
@@ -17,7 +18,9 @@ from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.parts.timeline import EdgeDrag, KeyDrag, TimeRangeView
 from app.editor.poses import flipping
+from app.editor.tools.tool_pointer import note_widget_in_use
 from app.storage import load_project
+from app.ui.window import action_queue
 
 VIEW = TimeRangeView(0.0, 48.0)
 WIDGET = 7
@@ -70,13 +73,13 @@ class EndHand(KeyHand):
 
 class SliderHand(Hand):
     def press(self):
-        editing.note_widget_in_use(self.session, WIDGET)
+        note_widget_in_use(self.session, WIDGET, is_pressed=True)
 
     def move(self, amount):
         channel_keys.set_channel_value(self.session, Channel(OPACITY, 0), 1 / (1 + amount))
 
     def let_go(self):
-        editing.note_widget_in_use(self.session, 0)
+        note_widget_in_use(self.session, 0, is_pressed=False)
 
 
 class TrackHand(Hand):
@@ -174,6 +177,20 @@ def test_command_commits_the_drag_before_it(window, loose, hand):
     assert loose.document is hand.before
 
 
+def test_typing_in_a_field_is_undone_and_holds_nothing(window, loose):
+    before = loose.document
+    note_widget_in_use(window.session, WIDGET, is_pressed=True)
+    note_widget_in_use(window.session, WIDGET, is_pressed=False)
+    for fps in (50, 60):
+        editing.edit_document(window.session, scene_commands.set_fps(fps))
+    typed = loose.document
+    assert not loose.history.is_held
+    editing.undo(window.session)
+    assert loose.document is before
+    editing.redo(window.session)
+    assert loose.document is typed
+
+
 @pytest.mark.usefixtures("is_down")
 def test_save_waits_for_the_end_of_the_drag(window, loose, hand, tmp_path):
     path = tmp_path / "a.lissom"
@@ -204,3 +221,47 @@ def test_hand_changes_nothing_of_another_layer(window, loose, hand):
     again.let_go()
     window.frames(2)
     assert loose.document is dragged
+
+
+@pytest.fixture
+def unfinished(window, loose, monkeypatch):
+    """A drag that was let go, with a command that waits for it, and the solver held."""
+    monkeypatch.setattr(action_queue, "PATIENCE", 0.0)
+    before, goal = loose.document, drag_bar(window, loose)
+    drag = loose.drag
+    window.until(lambda: drag.preview is not None)
+    with window.session.jobs.held(POSING):
+        window.act(editing.edit_document, scene_commands.set_fps(50))
+        window.act(editing.edit_document, scene_commands.set_fps(60))
+        window.frames(3)
+        assert loose.drag is drag
+        assert loose.document.fps == before.fps
+        yield before, goal, drag
+
+
+def test_commands_wait_in_order_until_the_pose_rests(window, loose, unfinished):
+    before, goal, _drag = unfinished
+    assert "Esc" in pending_changes.deferred_label(loose)
+    # The worker goes on.
+    finish_drag(window.session, loose)
+    window.frames(2)
+    assert loose.document.fps == 60
+    check_at_rest(loose.document, goal)
+    steps = []
+    for _ in range(3):
+        steps.append(loose.document.fps)
+        editing.undo(window.session)
+    assert steps == [60, 50, before.fps]
+    assert loose.document is before
+
+
+def test_escape_stops_a_pose_where_it_is_for_a_command(window, loose, unfinished):
+    _before, _goal, drag = unfinished
+    seen = drag.newest
+    assert not drag.is_at_rest
+    for is_pressed in (True, False):
+        imgui.get_io().add_key_event(imgui.Key.escape, is_pressed)
+        window.frames(2)
+    assert loose.drag is None
+    assert loose.layer.key(BENT).pose is seen
+    assert loose.document.fps == 60

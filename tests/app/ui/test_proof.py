@@ -7,7 +7,7 @@ import pytest
 from imgui_bundle import ImVec2
 
 from app.editor.actions import tutorials
-from app.ui.window.title import window_title
+from app.ui.window.desktop import window_title
 from app.ui.window.window import SIZE
 
 PROOF = Path(__file__).parents[3] / ".ci" / "bundle" / "prove"

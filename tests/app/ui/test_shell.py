@@ -12,7 +12,7 @@ from app.storage.assets import sample_images
 from app.ui.style.theme import PALETTES
 from app.ui.style.widgets import shorten_text
 from app.ui.window import desktop
-from app.ui.window.title import window_title
+from app.ui.window.desktop import window_title
 
 
 def test_welcome_offers_the_samples(window):

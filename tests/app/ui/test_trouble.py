@@ -33,7 +33,7 @@ from app.storage.project.archive import NO_PROJECT
 from app.storage.project_file import load_project, save_project
 from app.ui.bars.status import ENDLESS
 from app.ui.viewport.canvas import Canvas
-from app.ui.window.title import window_title
+from app.ui.window.desktop import window_title
 
 
 @pytest.fixture

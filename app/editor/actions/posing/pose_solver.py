@@ -5,13 +5,20 @@ from functools import partial
 from math import inf
 from typing import NamedTuple
 
-from app.document import Clip, Pose, Target, keyed_pose_at, segment_time_at
+from app.document import (
+    Clip,
+    Pose,
+    Target,
+    UnfinishedStepError,
+    keyed_pose_at,
+    segment_time_at,
+)
 from app.editor.actions import playback
 from app.editor.actions.posing.pose_commit import POSING, commit_drag, drop_drag, preview_pose
 from app.editor.actions.posing.reach_limit import clamp_unreachable_targets
 from app.editor.error_reports import report_failure, run_job
 from app.editor.project import Project
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.editor.work.drag_session import (
     MOST_STEPS,
     DragSession,
@@ -52,22 +59,41 @@ def finish_drag(session: Session, project: Project) -> None:
     """Solve an unfinished drag to rest on this thread, and commit it.
 
     Another change of the document follows. So the drag ends even if it is held, and later moves of
-    its hand are void.
+    its hand are void. Raises `UnfinishedStepError` after the history's patience; the worker then
+    goes on.
     """
     drag = project.drag
     if drag is None:
         return
     session.jobs.drop(POSING)
     project.history.interrupt()
+    until = session.clock() + project.history.patience
     try:
         while not _is_final(project, drag):
-            pace = _pace(drag)._replace(seconds=inf)
+            left = until - session.clock()
+            # The first step may need an in-between, however long it takes.
+            if left <= 0 or (left < inf and drag.solver is None):
+                drag.note_awaited()
+                raise UnfinishedStepError
+            pace = _pace(drag)._replace(seconds=left)
             _take(project, drag, _work(session, project, drag, pace)())
     except EXPECTED_ERRORS as error:
         drop_drag(session, project, drag)
         report_failure(session, POSING.complaint, error)
         return
     if drag.newest is not None:
+        commit_drag(session, project, drag, drag.newest)
+
+
+@with_project
+def stop_finishing_pose(session: Session, project: Project) -> None:
+    """End the drag for which a command waits, with the pose as it is."""
+    drag = project.drag
+    if drag is None or not drag.is_awaited:
+        return
+    if drag.newest is None:
+        drop_drag(session, project, drag)
+    else:
         commit_drag(session, project, drag, drag.newest)
 
 
