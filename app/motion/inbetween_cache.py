@@ -136,7 +136,7 @@ class InbetweenCache:
         if inbetweens.sampled_domain is not sampler.sites:
             # In-betweens of an earlier anchor were computed along other paths.
             sampler = PoseSampler(sampler.domain, anchor=clip.layer.anchor, sibling=sampler)
-        moved = apply_correction(clip, sampler, inbetweens, time, correction).frame(time)
+        moved = apply_correction(sampler, inbetweens, time, correction).frame(time)
         triangles = self.mesh.order.triangles(clip, frame)
         return VertexArray(positions=moved.positions, triangles=triangles)
 

@@ -147,7 +147,9 @@ def report_corrected(
         looked_at=len(looked_at),
         left_out=len(acting) - len(looked_at),
         slid=sum(repeats[frame] for frame, each in found.items() if each.sliders is not None),
-        curbed=max((each.sliders.curbed for each in found.values() if each.sliders), default=0.0),
+        curbed=max(
+            (each.sliders.solution.curbed for each in found.values() if each.sliders), default=0.0
+        ),
     )
 
 

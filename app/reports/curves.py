@@ -64,7 +64,7 @@ class CorrectedSample(NamedTuple):
         correction = self.frames.at(clip, frame)
         if correction is None or not isinstance(between, Inbetweens):
             return between.frame(time)
-        return apply_correction(clip, self.sampler, between, time, correction).frame(time)
+        return apply_correction(self.sampler, between, time, correction).frame(time)
 
 
 def measure_curves(

@@ -15,6 +15,7 @@ from app.document import (
     keyed_pose_at,
     segment_keys,
     segment_time_at,
+    slider_weights_at,
     stiffness_source,
     with_stiffness,
 )
@@ -260,8 +261,15 @@ def _pins(layer: Layer) -> tuple[complex, ...]:
     return () if any(handle.position == anchor for handle in layer.handles) else (anchor,)
 
 
-def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = None) -> Pose:
-    """Return a single map that is nearest to a frame without sliders, as a pose.
+def fit_shown_pose(
+    rig: Rig,
+    clip: Clip,
+    frame: float,
+    sibling: PoseSampler | None = None,
+    *,
+    with_sliders: bool = False,
+) -> Pose:
+    """Return a single map that is nearest to a frame, by default without sliders, as a pose.
 
     At a key it is the key's own pose. In-betweens are no maps over the cage, so their derivatives
     are fitted on the outline. A fit without certificate is mixed with the nearer key. A sibling of
@@ -270,17 +278,17 @@ def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | No
     layer, boundary = rig.layer, rig.deformer.boundary
     moment = segment_time_at(clip, frame)
     resting = keyed_pose_at(clip, moment)
-    if resting is not None:
+    if resting is not None and not (with_sliders and any(slider_weights_at(clip, frame))):
         return resting
-    keys = clip.keys
     after = moment.weight > 0.5
-    near = keys[segment_keys(clip)[moment.segment][after]].pose
+    near = resting or clip.keys[segment_keys(clip)[moment.segment][after]].pose
     sampler = PoseSampler(
         layer.domain, anchor=layer.anchor, points=boundary.points, sibling=sibling
     )
     animation = Animation(clip, points=boundary.points, sampler=sampler)
-    inbetweens, time = animation.base.unslid_at(frame)
-    blended = inbetweens.frame(time)
+    base = animation.base
+    found, time = base.segment_at(frame) if with_sliders else base.unslid_at(frame)
+    blended = found.frame(time)
     fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
     for share in (1.0, 0.5, 0.25, 0.0):
         own = layer.map_of(near)
@@ -289,7 +297,9 @@ def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | No
         )
         # The displayed frame may be older than the current stiffness.
         certificate = certify(mixed, boundary, layer.bounds)
-        if certificate.is_certified:
+        # A frame with sliders may lie on the limits, and its fit a little beyond.
+        is_unfolded = certificate.winding == 0 and certificate.k < 1 and certificate.sigma_b > 0
+        if certificate.is_certified or (with_sliders and is_unfolded):
             break
     else:
         mixed, certificate = layer.map_of(near), near.certificate

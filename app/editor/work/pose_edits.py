@@ -1,4 +1,4 @@
-"""What repeated edits of poses remember: the last flip, a blend, and the picked library pose."""
+"""What edits of poses remember: the last flip, a blend, the picked pose, choices for sliders."""
 
 from dataclasses import dataclass, replace
 
@@ -39,6 +39,10 @@ class PoseEdits(Revised):
     last_flip: LastFlip | None = None
     blend_preview: BlendPreview | None = None
     picked_pose: tuple[int, str] | None = None  # layer id, and name in its library
+    # Poses of the library for a new slider; None is the undeformed drawing.
+    slider_poses: frozenset[str | None] = frozenset({None})
+    # Sliders that go beyond their poses, by layer id and name.
+    wide_sliders: frozenset[tuple[int, str]] = frozenset()
 
     def note_flip(self, flip: LastFlip) -> None:
         self.last_flip = flip
@@ -46,6 +50,14 @@ class PoseEdits(Revised):
     def pick(self, layer: int, name: str) -> None:
         """Pick a pose of a layer's library."""
         self.picked_pose = layer, name
+
+    def toggle_slider_pose(self, name: str | None) -> None:
+        """Choose a pose for a new slider, or choose it no more."""
+        self.slider_poses ^= {name}
+
+    def toggle_wide_slider(self, layer: int, name: str) -> None:
+        """Let a slider go beyond its poses, or no more."""
+        self.wide_sliders ^= {(layer, name)}
 
     def blend(self, name: str, owner: int, share: float) -> BlendPreview:
         """Begin to blend a library pose, or go on with it, and return the blend."""

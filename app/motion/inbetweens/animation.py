@@ -62,5 +62,5 @@ class Animation:
         if correction is None:
             return self.base.frame(frame)
         inbetweens, time = self.base.unslid_at(frame)
-        found = apply_correction(self.clip, self.sampler, inbetweens, time, correction)
+        found = apply_correction(self.sampler, inbetweens, time, correction)
         return found.frame(time)

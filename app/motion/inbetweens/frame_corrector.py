@@ -117,7 +117,7 @@ class FrameCorrector:
         """Return the correction at a frame; None without one."""
         with self._lock:
             stage = self._motion.sliders
-            sliders = None if stage is None else stage.solution_at(frame)
+            sliders = None if stage is None else stage.solved_at(frame)
             alone = None if sliders is None else SecondaryCorrection(sliders=sliders)
             if not self._own.is_active(frame):
                 return alone

@@ -2,10 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
+from app.document import Pose
 from engine.arrays import nbytes_of
 from engine.interpolation import CorrectionSeries
 from engine.sliders import FrameSolution
+
+
+class SolvedSliders(NamedTuple):
+    """The curbed weights of poses with their full turns."""
+
+    solution: FrameSolution
+    poses: tuple[tuple[Pose, int], ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -15,7 +24,7 @@ class SecondaryCorrection:
     `sliders` come first.
     """
 
-    sliders: FrameSolution | None = None
+    sliders: SolvedSliders | None = None
     series: CorrectionSeries | None = None  # constant in time: the correction of this frame
     # In pixels by handle id, for handles with tracks.
     target_errors: Mapping[int, float] = field(default_factory=dict)
@@ -31,4 +40,4 @@ class SecondaryCorrection:
     @property
     def nbytes(self) -> int:
         """Memory of the functions in bytes."""
-        return nbytes_of((self.sliders, self.series))
+        return nbytes_of((self.sliders and self.sliders.solution, self.series))

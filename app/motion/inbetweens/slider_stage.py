@@ -1,6 +1,6 @@
 """The sliders of a clip, on top of its motion from key to key."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import copy
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from app.document import Clip, Layer, Pose, Variant, slider_poses, slider_weights_at
 from app.motion.inbetweens.auto_pins import BESIDE
 from app.motion.inbetweens.pose_sampler import PoseSampler
-from app.motion.inbetweens.secondary_correction import SecondaryCorrection
+from app.motion.inbetweens.secondary_correction import SecondaryCorrection, SolvedSliders
 from app.motion.inbetweens.segment_keys import frame_content
 from engine.arrays import Complexes, Indices
 from engine.geometry import diameter
@@ -47,13 +47,13 @@ class SliderStage:
 
     @property
     def poses(self) -> tuple[Pose, ...]:
-        return _poses(self.clip)[0]
+        return _apart(slider_poses(self.clip))[0]
 
     def frame(self, base: Inbetweens, time: float, frame: float) -> SliderFrame:
         """Add the sliders at a frame to an in-between of the sampler at a time."""
-        return add_sliders(self.clip, self._sampler, base, time, self.solution_at(frame))
+        return add_sliders(self._sampler, base, time, self.solved_at(frame))
 
-    def solution_at(self, frame: float) -> FrameSolution:
+    def solved_at(self, frame: float) -> SolvedSliders:
         """Return the curbed weights of a frame, and how strongly they are curbed."""
         solver, base_at = self._prepare()
 
@@ -63,12 +63,14 @@ class SliderStage:
             return solver.solve(weights, inbetweens.frame_with_values(time)[1])
 
         key = solver, frame_content(self.clip, frame, self._variant)
-        return self._sampler.known.slider_solution(key, solve)
+        solution = self._sampler.known.slider_solution(key, solve)
+        return SolvedSliders(solution, slider_poses(self.clip))
 
     def _prepare(self) -> tuple[FrameSolver, BaseAt]:
         """Prepare the solver, and the in-betweens where it needs them."""
         if self._prepared is None:
-            (poses, turns), layer, sampler = _poses(self.clip), self.clip.layer, self._sampler
+            poses, turns = _apart(slider_poses(self.clip))
+            layer, sampler = self.clip.layer, self._sampler
             solver = sampler.slider_solver(
                 poses,
                 turns,
@@ -88,7 +90,6 @@ class SliderStage:
 
 
 def apply_correction(
-    clip: Clip,
     sampler: PoseSampler,
     inbetweens: Inbetweens,
     time: float,
@@ -97,27 +98,27 @@ def apply_correction(
     """Return the in-betweens of a sampler, changed by a correction at a time."""
     found: Inbetweens | SliderFrame = inbetweens
     if correction.sliders is not None:
-        found = add_sliders(clip, sampler, inbetweens, time, correction.sliders)
+        found = add_sliders(sampler, inbetweens, time, correction.sliders)
     if correction.series is not None:
         found = found.with_correction(correction.series, sampler.basis)
     return found
 
 
 def add_sliders(
-    clip: Clip, sampler: PoseSampler, base: Inbetweens, time: float, solution: FrameSolution
+    sampler: PoseSampler, base: Inbetweens, time: float, sliders: SolvedSliders
 ) -> SliderFrame:
-    """Return an in-between of a sampler at a time with a solution of the clip's sliders."""
+    """Return an in-between of a sampler at a time with sliders."""
+    solution, poses = sliders
     extension = None if solution.densities is None else sampler.extension
     basis = None if solution.h is None else sampler.basis
-    poses = sampler.slider_poses(*_poses(clip))
-    return poses.add_to(base, time, solution, extension, basis)
+    found = sampler.slider_poses(*_apart(poses))
+    return found.add_to(base, time, solution, extension, basis)
 
 
-def _poses(clip: Clip) -> tuple[tuple[Pose, ...], Indices]:
-    """Return the poses of a clip's sliders, and their full turns."""
-    named = slider_poses(clip)
-    turns = np.array([turns for _, turns in named], dtype=np.intp)
-    return tuple(pose for pose, _ in named), turns
+def _apart(poses: Sequence[tuple[Pose, int]]) -> tuple[tuple[Pose, ...], Indices]:
+    """Return the poses of sliders, and their full turns."""
+    turns = np.array([turns for _, turns in poses], dtype=np.intp)
+    return tuple(pose for pose, _ in poses), turns
 
 
 def _pins(layer: Layer, poses: tuple[Pose, ...], anchor: complex) -> Complexes:

@@ -13,6 +13,7 @@ from imgui_bundle import (  # before glfw: it brings the library itself
 from app.editor.layering.pictures import drop_files
 from app.ui.panels.layers.tab import draw_layers_panel
 from app.ui.panels.motion_preset.tab import draw_motion_panel
+from app.ui.panels.pose_library.tab import draw_poses_panel
 
 import glfw  # isort: skip
 
@@ -25,7 +26,7 @@ from app.render.gpu.context import describe_graphics, is_software
 from app.storage import sample_images
 from app.texts import N_, _, message_of
 from app.ui.panel import Panel
-from app.ui.panels import deform, distortion, export, handle, poses
+from app.ui.panels import deform, distortion, export, handle
 from app.ui.panels.layer_setup import cut_out, domain, material
 from app.ui.style.theme import Look
 from app.ui.timeline import timeline
@@ -201,7 +202,7 @@ class Window:
 
     def _panels(self) -> list[Panel]:
         draw_layers = partial(draw_layers_panel, pictures=self._layer_picture)
-        draw_poses = partial(poses.draw_poses_panel, pictures=self._pose_picture)
+        draw_poses = partial(draw_poses_panel, pictures=self._pose_picture)
         return [
             Panel(
                 N_("Viewport"),

@@ -105,7 +105,7 @@ def test_slider_frames_keep_tight_limits():
     assert max(frame.k.max() for frame in frames) < 0.1003
     assert max(frame.sigma_a.max() for frame in frames) < 1.1033
     assert min(frame.sigma_b.min() for frame in frames) > 0.8973
-    assert motion.base.sliders.solution_at(0).curbed > 0
+    assert motion.base.sliders.solved_at(0).solution.curbed > 0
 
 
 def test_tracks_act_on_top_of_sliders():
@@ -144,7 +144,7 @@ def test_pad_blends_poses_of_a_grid():
     pad = slider(*corners)
     document = slid(1j, 0.5 + 0.5j, slider=pad)
     assert_allclose(positions(document, 0), image(document, 2), rtol=0, atol=1e-9)
-    assert len(animate(document).base.sliders.solution_at(10).weights) == 3
+    assert len(animate(document).base.sliders.solved_at(10).solution.weights) == 3
 
 
 def test_drawing_is_unchanged_without_sliders():

@@ -210,7 +210,7 @@ def _start(session: Session, project: Project) -> DragStart | None:
     frame = playback.current_frame(session, project)
     if shown is None or not shown.is_current or shown.frame != frame or shown.clip != project.clip:
         return None
-    if layer.tracks or layer.springs:
+    if layer.tracks or layer.springs or layer.sliders:
         return None
     identities = [handle.id for handle in layer.handles]
     places = shown.handle_positions.tolist()

@@ -7,12 +7,14 @@ import numpy as np
 from app.document import (
     CAMERA,
     OPACITY,
+    SLIDER,
     Camera,
     Channel,
     camera_at,
     channel_commands,
     frames_in,
     layer_commands,
+    slider_commands,
     source_frame,
     value_at,
 )
@@ -31,13 +33,16 @@ def set_channel_value(
 ) -> None:
     """Set a channel's value at the present frame by a key.
 
-    An opacity without keys is set for all frames.
+    An opacity without keys is set for all frames; without auto-key, so is a slider.
     """
     frame = playback.current_frame(session, project)
     command = channel_commands.set_key(channel, frame, value)
     is_keyed = bool(frames_in(project.document, channel))
     if channel.kind is OPACITY and channel.layer is not None and not is_keyed:
         command = layer_commands.set_opacity(channel.layer, value)
+    is_free = not (is_keyed or session.settings.preferences.auto_key)
+    if channel.kind is SLIDER and channel.layer is not None and is_free:
+        command = slider_commands.set_slider_value(channel.layer, str(channel.part), value)
     editing.edit_document(session, command)
 
 

@@ -25,9 +25,12 @@ class PosePictures:
         self._side = 1
 
     def get(self, layer: int, pose: Pose, side: int) -> int | None:
-        """Return the texture of a pose, `side` pixels wide and high; None before it is drawn."""
+        """Return the texture of a pose; None before it is drawn.
+
+        It is at least `side` pixels wide and high.
+        """
         self._wanted.add((layer, pose))
-        self._side = side
+        self._side = max(self._side, side)
         target = self._targets.get((layer, pose))
         return None if target is None else target.texture.glo
 
@@ -63,6 +66,7 @@ class PosePictures:
             self._renderer.draw(target, view, scene)
             self._targets[layer, pose] = target
         self._wanted.clear()
+        self._side = 1
 
     def release(self) -> None:
         """Release the textures. Requested poses are drawn again."""

@@ -1,15 +1,16 @@
 """The library of poses: thumbnails that can be applied, blended in, or dragged to the timeline."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import groupby
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import LibraryPose, Pose, format_pairs, pose_commands
+from app.document import LibraryPose, format_pairs, pose_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, viewing
 from app.editor.poses import flipping, library, pasting
 from app.texts import _
+from app.ui.panels.pose_library.sliders import Pictures, draw_sliders
 from app.ui.shortcuts.widgets import draw_action_button, draw_action_text_button
 from app.ui.style.sliders import Scale, number_field, slider_track
 from app.ui.style.theme import SMALL, Look, colour_u32, pixel_density
@@ -29,7 +30,6 @@ from app.ui.style.widgets import (
 
 TILE, LEAST_GAP = 6.6, 0.6  # em: side of a thumbnail, smallest distance
 SHARES = Scale(left=0.0, right=1.0)
-Pictures = Callable[[int, Pose, int], int | None]
 
 
 def draw_poses_panel(
@@ -53,6 +53,7 @@ def draw_poses_panel(
         )
     else:
         small_text(look, _("Save a pose to use it again, at any frame, whole or blended in."))
+    actions += draw_sliders(session, look, project, pictures)
     heading(look, _("Flip"))
     return actions + _flip(session, look, project)
 
