@@ -4,10 +4,9 @@ from contextlib import ExitStack, closing
 from dataclasses import replace
 
 from app.cli.console import StatusLine, print_notices
-from app.document import Document, Variant, clip_of, without_foreign_clips
+from app.document import Document, Variant, without_foreign_clips
 from app.errors import LissomError, join_names
 from app.export import (
-    CachedVertices,
     ExportPlan,
     ExportRequest,
     FrameRenderer,
@@ -18,7 +17,7 @@ from app.export import (
     with_reduced_meshes,
 )
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Animation, placed_animations
+from app.motion import Evaluator
 from app.render.gpu.context import create_context
 from app.storage import cut_picture, decode_picture
 from app.texts import _, ngettext
@@ -46,6 +45,9 @@ def export_project(document: Document, request: ExportRequest, variant: Variant 
     """Run the export; return a summary."""
     source = _("the picture of {project}").format(project=request.sources[0])
     pictures = _pictures(document, source)
+    if variant is not None:
+        layers = tuple(replace(layer, variant=variant) for layer in document.layers)
+        document = replace(document, layers=layers)
     maker: FrameRenderer | MeshExport
     with ExitStack() as ending:
         context = None
@@ -56,9 +58,9 @@ def export_project(document: Document, request: ExportRequest, variant: Variant 
             document = with_reduced_meshes(document, request.settings.shapes.triangles)
         status = ending.enter_context(StatusLine())
         status.show(_("preparing the in-betweens"))
-        vertices = _cached_vertices(document, variant)
-        plan = plan_export(document, request, vertices)
-        given = document, pictures, vertices, plan
+        evaluator = Evaluator.exact(document)
+        plan = plan_export(document, request, evaluator)
+        given = document, pictures, evaluator, plan
         maker = MeshExport(*given) if context is None else FrameRenderer(context, *given)
         with closing(maker.run()) as steps:
             for done in steps:
@@ -82,12 +84,6 @@ def _pictures(document: Document, source: str) -> dict[int, Bytes]:
         layer.id: cut_picture(decoded[layer.picture], layer.cut_out).texture
         for layer in document.layers
     }
-
-
-def _cached_vertices(document: Document, variant: Variant | None) -> dict[int, CachedVertices]:
-    animations = [Animation(clip_of(document, layer.id), variant) for layer in document.layers]
-    attached = placed_animations(animations, document)
-    return {layer: CachedVertices(animation) for layer, animation in attached.items()}
 
 
 def _summary_of_frames(plan: ExportPlan) -> str:

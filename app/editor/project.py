@@ -45,9 +45,9 @@ from app.editor.work.revised import Revised
 from app.editor.work.track_drag import TrackDrag
 from app.motion import (
     BoundingBox,
+    Evaluator,
     ParentTransforms,
     PoseSampler,
-    parenting_key,
 )
 from app.render import View
 from app.solving import KeyResolver
@@ -230,8 +230,14 @@ class Project(Revised):
     @property
     def current_parent_transforms(self) -> ParentTransforms | None:
         """Joints of the present document; None without joints, or while they are unknown."""
-        follows = self.measured.parent_transforms.follows(parenting_key(self.document))
-        return self.measured.parent_transforms.value if follows else None
+        return self.evaluator.current_transforms(self.document)
+
+    @property
+    def evaluator(self) -> Evaluator:
+        """The evaluator of displayed frames."""
+        return Evaluator(
+            layers=self.runtimes.layers, transforms=self.measured.parent_transforms.value
+        )
 
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
         """Return the active layer's placements at some frames; `unknown` while they are unknown."""
@@ -276,8 +282,14 @@ class Project(Revised):
                 runtime.comparison = None
                 continue
             comparison = runtime.comparison or ComparisonRuntime(
-                original=layer, layer=layer, method=layer.variant
+                layer_id=layer.id,
+                store=runtime.store,
+                shown=runtime.shown,
+                original=layer,
+                layer=layer,
+                method=layer.variant,
             )
+            comparison.store = runtime.store
             if comparison.original is not layer or comparison.method is not method:
                 comparison.original, comparison.method = layer, method
                 comparison.layer = (

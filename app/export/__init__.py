@@ -18,10 +18,6 @@ from app.export.destination import (
     with_suffix_for as with_suffix_for,
 )
 from app.export.frame_renderer import FrameRenderer as FrameRenderer
-from app.export.frame_vertices import (
-    CachedVertices as CachedVertices,
-    FrameVertices as FrameVertices,
-)
 from app.export.framing import find_shown_box as find_shown_box, frame_view as frame_view
 from app.export.mesh_export import MeshExport as MeshExport
 from app.export.morph_mesh import with_reduced_meshes as with_reduced_meshes

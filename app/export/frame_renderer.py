@@ -4,18 +4,18 @@ import math
 from collections.abc import Generator, Mapping
 from contextlib import ExitStack, suppress
 from dataclasses import replace
+from functools import partial
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.document import Document, camera_at, clip_of, composite_layers, is_visible
+from app.document import Document, camera_at, is_visible
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.decimation import MeshDecimator
-from app.export.frame_vertices import CachedVertices
 from app.export.framing import find_shown_box
 from app.export.plan import ExportPlan
 from app.export.run import export_frames
-from app.motion import TriangleOrder, VertexArray, bounding_box
+from app.motion import Evaluator, SceneFrame, VertexArray, bounding_box
 from app.render import TRANSPARENT, Backdrop, Colour, DrawnMesh, Renderer, Scene, View
 from app.render.gpu.context import Context, GlError, is_software, largest_size
 from app.render.gpu.mesh import GpuMesh
@@ -26,7 +26,7 @@ from app.texts import _, message_of
 from engine.arrays import Bytes
 from engine.domain import find_closed_cuts
 from engine.domain.meshing.mesh import Mesh
-from engine.geometry import IDENTITY_MOTION, Similarity
+from engine.geometry import IDENTITY_MOTION, RigidMotion, Similarity
 
 _SMALL: Final = 0.75  # frame pixels per picture pixel
 _TILE: Final = 4096  # pixels each way drawn at once, at most
@@ -39,11 +39,11 @@ _OUTSIDE: Final = 1.0  # pixels; nobody sees less than this
 
 
 class PosedFrame(NamedTuple):
-    """A frame of the timeline, and the posed vertices of each layer."""
+    """A frame of the timeline, and the posed vertices of its visible layers."""
 
-    frame: float
-    vertices: tuple[VertexArray, ...]  # in the plane
-    camera: Similarity | None  # moves the camera's view onto the canvas
+    scene: SceneFrame
+    vertices: Mapping[int, VertexArray]  # by layer id, in the plane
+    camera: Similarity | RigidMotion  # moves the camera's view onto the canvas
 
 
 class _Tile(NamedTuple):
@@ -63,8 +63,8 @@ class FrameRenderer:
         Current on the drawing thread.
     pictures : mapping of int to uint8, shape (h, w, 4)
         Decoded pictures by layer id.
-    poses : mapping of int to CachedVertices
-        By layer id.
+    evaluator : Evaluator
+        Of the document's frames.
 
     Raises
     ------
@@ -77,23 +77,22 @@ class FrameRenderer:
         context: Context,
         document: Document,
         pictures: Mapping[int, Bytes],
-        poses: Mapping[int, CachedVertices],
+        evaluator: Evaluator,
         plan: ExportPlan,
     ) -> None:
         self._context, self._document, self._plan = context, document, plan
         layers = document.exported_layers
-        self._clips = [clip_of(document, layer.id) for layer in layers]
-        self._poses = [poses[layer.id] for layer in layers]
+        self._evaluator, self._layers = evaluator, [layer.id for layer in layers]
         self._background = Backdrop(colour=_colour(plan))
         shots = [camera_at(document, frame) for frame in plan.times]
         zooms = [1.0 if shot is None else shot.zoom for shot in shots]
         smallest, largest = min(zooms) * plan.view.scale, max(zooms) * plan.view.scale
         meshes = [layer.domain.mesh for layer in layers]
-        self._orders = [TriangleOrder(mesh) for mesh in meshes]
-        self._thinnings = [
-            MeshDecimator(layer.domain, largest) if _pays(plan, mesh, context, largest) else None
+        self._thinnings = {
+            layer.id: MeshDecimator(layer.domain, largest)
             for layer, mesh in zip(layers, meshes, strict=True)
-        ]
+            if _pays(plan, mesh, context, largest)
+        }
         looks = np.linspace(0, len(plan.times) - 1, _LOOKS).round().astype(int)
         self._looks = tuple(plan.times[index] for index in looks)
         self._reach = bounding_box(np.concatenate([mesh.vertices for mesh in meshes]))
@@ -113,7 +112,7 @@ class FrameRenderer:
             # framebuffer even if it is deleted. A target without memory has raised by itself.
             while context.error != _NO_ERROR:
                 pass
-            self._drawn = []
+            self._drawn: dict[int, DrawnMesh] = {}
             textures: dict[int, GpuPicture] = {}  # by picture; layers may share one
             for layer, mesh in zip(layers, meshes, strict=True):
                 rest = mesh.vertices - layer.corner
@@ -127,8 +126,8 @@ class FrameRenderer:
                     programs, texture, rest=rest, triangles=mesh.triangles, seam=seam
                 )
                 owned.callback(gpu_mesh.release)
-                self._drawn.append(DrawnMesh(gpu_mesh, by_shader=False))
-                owned.callback(self._drawn[-1].release)
+                self._drawn[layer.id] = DrawnMesh(gpu_mesh, by_shader=False)
+                owned.callback(self._drawn[layer.id].release)
             self._owned = owned.pop_all()
 
     def pose(self, frame: float) -> PosedFrame:
@@ -139,40 +138,44 @@ class FrameRenderer:
         if self._looks:
             self._prepare_thinnings()
         try:
-            positions = [poses.positions(frame) for poses in self._poses]
+            scene = self._evaluate(frame)
+            places = {layer: each.scene_positions for layer, each in scene.layers.items()}
         except EXPECTED_ERRORS as error:
-            raise LissomError(
-                _("frame {frame:g} cannot be drawn: {error}").format(
-                    frame=frame, error=message_of(error)
-                )
-            ) from error
-        box = bounding_box(np.concatenate(positions))
-        if not np.isfinite(box).all():
-            raise LissomError(
-                _("frame {frame:g} cannot be drawn: some of its points are not finite").format(
-                    frame=frame
-                )
-            )
-        self._reach = self._reach.joined(box)
-        vertices = []
-        layers = zip(positions, self._clips, self._orders, self._thinnings, strict=True)
-        for places, clip, order, thinning in layers:
-            triangles = order.triangles(clip, frame)
+            raise _failure(frame, message_of(error)) from error
+        vertices = {}
+        for layer, positions in places.items():
+            box = bounding_box(positions)
+            if not np.isfinite(box).all():
+                raise _failure(frame, _("some of its points are not finite"))
+            self._reach = self._reach.joined(box)
+            triangles, thinning = scene.layers[layer].vertices.triangles, self._thinnings.get(layer)
             if thinning is not None:
-                triangles = thinning.triangles(places, triangles)
-            vertices.append(VertexArray(positions=places, triangles=triangles))
-        shot = camera_at(self._document, frame)
-        camera = None if shot is None else shot.canvas_motion(self._document.canvas)
-        return PosedFrame(frame, tuple(vertices), camera)
+                triangles = thinning.triangles(positions, triangles)
+            vertices[layer] = VertexArray(positions=positions, triangles=triangles)
+        camera = scene.camera
+        return PosedFrame(
+            scene,
+            vertices,
+            IDENTITY_MOTION if camera is None else camera.canvas_motion(self._document.canvas),
+        )
+
+    def _evaluate(self, frame: float) -> SceneFrame:
+        """Return a frame with the exported layers that are visible."""
+        document = self._document
+        seen = [i for i in self._layers if is_visible(document, document.layer(i), frame)]
+        return self._evaluator.evaluate(document, frame, only=seen)
 
     def _prepare_thinnings(self) -> None:
         """Find decimated triangles that suit sampled frames of the whole motion."""
         looks, self._looks = self._looks, ()
-        for poses, thinning in zip(self._poses, self._thinnings, strict=True):
+        for layer, thinning in self._thinnings.items():
             # A failing frame raises its error when it is drawn.
             with suppress(*EXPECTED_ERRORS):
-                if thinning is not None:
-                    thinning.prepare([poses.cache_positions(frame) for frame in looks])
+                evaluate = partial(
+                    self._evaluator.evaluate, self._document, only=[layer], keep=True
+                )
+                scenes = [evaluate(frame) for frame in looks]
+                thinning.prepare([each.layers[layer].scene_positions for each in scenes])
 
     def draw(self, posed: PosedFrame) -> Bytes:
         """Return the picture of a posed frame, uint8 (h, w, 4) with straight alpha.
@@ -180,31 +183,21 @@ class FrameRenderer:
         Raises `LissomError` if the frame cannot be drawn.
         """
         try:
-            drawn = zip(self._drawn, posed.vertices, self._clips, strict=True)
             seen = {
-                clip.layer.id: mesh.pose(vertices, placement=posed.camera or IDENTITY_MOTION)
-                for mesh, vertices, clip in drawn
-                if is_visible(self._document, clip.layer, posed.frame)
+                layer: self._drawn[layer].pose(vertices, placement=posed.camera)
+                for layer, vertices in posed.vertices.items()
             }
-            meshes = composite_layers(self._document, seen, posed.frame)
+            meshes = posed.scene.composite(seen)
             scene = Scene(background=self._background, meshes=meshes)
             pixels = _filled(self._plan.view.size, self._background.colour)
             for tile in self._tiles:
                 self._renderer.draw(self._target, tile.view, scene)
                 self._read(posed, tile.view, pixels[tile.top :, tile.left :])
         except (*EXPECTED_ERRORS, GlError) as error:
-            raise LissomError(
-                _("frame {frame:g} cannot be drawn: {error}").format(
-                    frame=posed.frame, error=message_of(error)
-                )
-            ) from error
+            raise _failure(posed.scene.frame, message_of(error)) from error
         # OpenGL continues after an error, with black or outdated pictures.
         if self._context.error != _NO_ERROR:
-            raise LissomError(
-                _("frame {frame:g} cannot be drawn: OpenGL failed; try again").format(
-                    frame=posed.frame
-                )
-            )
+            raise _failure(posed.scene.frame, _("OpenGL failed; try again"))
         return pixels
 
     def _read(self, posed: PosedFrame, view: View, pixels: Bytes) -> None:
@@ -215,8 +208,10 @@ class FrameRenderer:
         """
         height, width, _ = pixels.shape
         width, height = min(width, view.size[0]), min(height, view.size[1])
-        vertices = np.concatenate([placed.positions for placed in posed.vertices])
-        box = bounding_box(view.to_pixels((posed.camera or IDENTITY_MOTION).apply(vertices)))
+        if not posed.vertices:
+            return
+        vertices = np.concatenate([placed.positions for placed in posed.vertices.values()])
+        box = bounding_box(view.to_pixels(posed.camera.apply(vertices)))
         # Two more pixels: no touched pixel is left out.
         left, top = (max(0, math.floor(side) - 2) for side in _sides(box.lower))
         right, bottom = (math.ceil(side) + 2 for side in _sides(box.upper))
@@ -242,6 +237,12 @@ class FrameRenderer:
 
     def release(self) -> None:
         self._owned.close()
+
+
+def _failure(frame: float, reason: str) -> LissomError:
+    return LissomError(
+        _("frame {frame:g} cannot be drawn: {error}").format(frame=frame, error=reason)
+    )
 
 
 def _pays(plan: ExportPlan, mesh: Mesh, context: Context, scale: float) -> bool:

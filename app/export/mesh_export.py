@@ -13,7 +13,6 @@ from app.document import (
     channels_of,
     describe_channel,
 )
-from app.export.frame_vertices import FrameVertices
 from app.export.morph_mesh import (
     DEFAULT_TOLERANCE,
     MOST_TARGETS,
@@ -25,6 +24,7 @@ from app.export.plan import ExportPlan
 from app.export.run import wait_some
 from app.export.writers.table import SHAPE_WRITERS
 from app.export_formats import EXPORT_FORMATS
+from app.motion import Evaluator
 from app.storage import Cancellation, write_atomically
 from app.texts import _
 from engine.arrays import Bytes
@@ -41,19 +41,19 @@ class MeshExport:
         With the reduced meshes.
     pictures : mapping of int to uint8, shape (h, w, 4)
         Decoded pictures by layer id.
-    poses : mapping of int to FrameVertices
-        By layer id.
+    evaluator : Evaluator
+        Of the document's frames.
     """
 
     def __init__(
         self,
         document: Document,
         pictures: Mapping[int, Bytes],
-        poses: Mapping[int, FrameVertices],
+        evaluator: Evaluator,
         plan: ExportPlan,
     ) -> None:
         self._plan = plan
-        self._work = build_morph_scene(document, pictures, poses, plan)
+        self._work = build_morph_scene(document, pictures, evaluator, plan)
         self._share = 0.0
         self._document = document
         self._scene: MorphScene | None = None

@@ -1,8 +1,9 @@
 """A layer for other programs: a light textured mesh with a few morph targets."""
 
 import math
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Generator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final, TypeVar
 
 import numpy as np
@@ -12,7 +13,6 @@ from app.document import (
     CompositeGroup,
     Document,
     Layer,
-    camera_at,
     clip_of,
     composite_layers,
     is_visible,
@@ -20,10 +20,9 @@ from app.document import (
 )
 from app.errors import LissomError
 from app.export.alpha_bleed import bleed_edges
-from app.export.frame_vertices import FrameVertices
 from app.export.plan import ExportPlan
 from app.export_formats import EXPORT_FORMATS
-from app.motion import TriangleOrder, bounding_box
+from app.motion import Evaluator, TriangleOrder, bounding_box
 from app.texts import _
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
 from engine.domain import ClosedCuts, find_closed_cuts
@@ -93,7 +92,7 @@ def _lighter(layer: Layer, triangles: int) -> Layer:
 def build_morph_scene(
     document: Document,
     pictures: Mapping[int, Bytes],
-    poses: Mapping[int, FrameVertices],
+    evaluator: Evaluator,
     plan: ExportPlan,
 ) -> Generator[float, None, MorphScene]:
     """Build the meshes of every layer; yield the finished share of the work, from 0 to 1.
@@ -106,15 +105,15 @@ def build_morph_scene(
         With the reduced meshes.
     pictures : mapping of int to uint8, shape (h, w, 4)
         Decoded pictures by layer id.
-    poses : mapping of int to FrameVertices
-        By layer id.
+    evaluator : Evaluator
+        Of the document's frames.
 
     Raises
     ------
     LissomError
         If no layer is visible, or the motion fails at some frame.
     """
-    document = _with_peak_opacity(document)
+    moving, document = document, _with_peak_opacity(document)
     first, last = plan.span
     times = np.linspace(first, last, round((last - first) / _CLOSE) + 1).tolist()
     tolerance = plan.shapes.tolerance
@@ -135,7 +134,7 @@ def build_morph_scene(
         seam = find_closed_cuts(layer.domain)
         places = mesh.vertices if seam is None else seam.close_cuts(mesh.vertices)
         steps = build_morph_targets(
-            _painted(document, plan, seam, poses[layer.id]),
+            partial(_painted, moving, evaluator, plan, seam, layer.id),
             places,
             times,
             tolerance=DEFAULT_TOLERANCE if tolerance is None else tolerance,
@@ -178,18 +177,19 @@ def _with_peak_opacity(document: Document) -> Document:
 
 
 def _painted(
-    document: Document, plan: ExportPlan, seam: ClosedCuts | None, poses: FrameVertices
-) -> Callable[[float], Complexes]:
-    """Return a function from time to painted vertices: cuts closed, in the camera's view."""
-    has_frame = EXPORT_FORMATS[plan.format].has_frame
-
-    def at(frame: float) -> Complexes:
-        places = poses.positions(frame)
-        places = places if seam is None else seam.close_cuts(places)
-        shot = camera_at(document, frame) if has_frame else None
-        return places if shot is None else shot.canvas_motion(document.canvas).apply(places)
-
-    return at
+    document: Document,
+    evaluator: Evaluator,
+    plan: ExportPlan,
+    seam: ClosedCuts | None,
+    layer: int,
+    frame: float,
+) -> Complexes:
+    """Return the painted vertices of a layer: cuts closed, in the camera's view."""
+    scene = evaluator.evaluate(document, frame, only=[layer])
+    places = scene.layers[layer].scene_positions
+    places = places if seam is None else seam.close_cuts(places)
+    camera = scene.camera if EXPORT_FORMATS[plan.format].has_frame else None
+    return places if camera is None else camera.canvas_motion(document.canvas).apply(places)
 
 
 def _changes(values: list[tuple[int, Value]]) -> list[tuple[int, Value]]:

@@ -1,7 +1,6 @@
 """The plan of an export, checked before the first frame is drawn."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -14,7 +13,6 @@ from app.document import (
     FrameRange,
     export_frame_range,
     frame_times,
-    frames_for_fit,
 )
 from app.errors import LIBRARIES, LissomError, install_hint
 from app.export.destination import (
@@ -24,10 +22,9 @@ from app.export.destination import (
     find_overwritten_files,
     find_stale_frames,
 )
-from app.export.frame_vertices import CachedVertices
 from app.export.framing import check_blocks, check_largest_size, frame_view, list_added_pixels
 from app.export_formats import EXPORT_FORMATS, FormatSettings
-from app.motion import BoundingBox, bounding_box, motion_bounding_box
+from app.motion import BoundingBox, Evaluator, bounding_box, measure_extent
 from app.render import View
 from app.sound import Soundtrack, find_soundtrack, list_sound_notices
 from app.texts import _, ngettext
@@ -189,15 +186,15 @@ def list_overwritten_files(document: Document, request: ExportRequest) -> list[s
 def plan_export(
     document: Document,
     request: ExportRequest,
-    poses: Mapping[int, CachedVertices],
+    evaluator: Evaluator,
     extent: BoundingBox | None = None,
 ) -> ExportPlan:
     """Plan an export whose request has passed `check_request`.
 
     Parameters
     ----------
-    poses : mapping of int to CachedVertices
-        By layer id; used only if the framing depends on the motion.
+    evaluator : Evaluator
+        Used only if the framing depends on the motion.
     extent : BoundingBox, optional
         Box around the whole motion, if already known.
 
@@ -215,11 +212,7 @@ def plan_export(
     seconds = (len(times) if is_drawn else end - frames.first) / fps
     rest = np.concatenate([layer.domain.mesh.vertices for layer in document.exported_layers])
     if settings.framing == "fit" and not document.camera and extent is None:
-        extent = motion_bounding_box(
-            document,
-            frames_for_fit(document, frames),
-            lambda layer, frame: poses[layer].cache_positions(frame),
-        )
+        extent = measure_extent(document, evaluator, frames)
     plan = ExportPlan(
         out=request.out,
         format=settings.format,

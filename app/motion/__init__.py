@@ -10,13 +10,16 @@ from app.motion.corrected_frames import (
     CorrectionUpdate as CorrectionUpdate,
     reuse_corrections as reuse_corrections,
 )
-from app.motion.deform_mesh import DeformMesh as DeformMesh, MeshPoints as MeshPoints
+from app.motion.evaluator import (
+    Evaluator as Evaluator,
+    LayerStages as LayerStages,
+    SceneFrame as SceneFrame,
+)
 from app.motion.extents.extent import (
     BoundingBox as BoundingBox,
     bounding_box as bounding_box,
     extent_key as extent_key,
     measure_extent as measure_extent,
-    motion_bounding_box as motion_bounding_box,
 )
 from app.motion.inbetween_cache import (
     InbetweenCache as InbetweenCache,
@@ -39,7 +42,13 @@ from app.motion.inbetweens.spring_offsets import ParentMotion as ParentMotion
 from app.motion.layer_frame import (
     LayerFrame as LayerFrame,
     evaluate_layer as evaluate_layer,
-    place_displayed_frames as place_displayed_frames,
+)
+from app.motion.meshes.deform_mesh import DeformMesh as DeformMesh, MeshPoints as MeshPoints
+from app.motion.meshes.triangle_order import TriangleOrder as TriangleOrder
+from app.motion.meshes.vertices import (
+    StreamedVertices as StreamedVertices,
+    VertexArray as VertexArray,
+    Vertices as Vertices,
 )
 from app.motion.parenting.attach import (
     anchor_or_default as anchor_or_default,
@@ -51,7 +60,6 @@ from app.motion.parenting.parent_transforms import (
     find_parent_motion as find_parent_motion,
     layer_animation as layer_animation,
     parenting_key as parenting_key,
-    placed_animations as placed_animations,
 )
 from app.motion.rival_methods.boundary_keyframes import (
     discrete_harmonic as discrete_harmonic,
@@ -67,9 +75,3 @@ from app.motion.rival_methods.preparation import (
 )
 from app.motion.rival_methods.triangulated_domain import TriangulatedDomain as TriangulatedDomain
 from app.motion.tracing.motion_paths import MotionPaths as MotionPaths, trace_paths as trace_paths
-from app.motion.triangle_order import TriangleOrder as TriangleOrder
-from app.motion.vertices import (
-    StreamedVertices as StreamedVertices,
-    VertexArray as VertexArray,
-    Vertices as Vertices,
-)

@@ -13,12 +13,13 @@ from app.motion.inbetweens.frame_corrector import (
 )
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
+from app.motion.inbetweens.spring_offsets import ParentMotion
 from app.motion.parenting.parent_transforms import find_parent_motion
 
 BATCH = 2  # corrected frames per job, so that the worker soon takes more urgent jobs
 BASE_FRAMES_AT_ONCE = 6  # base frames per job
 
-Found = Mapping[int, SecondaryCorrection | None]
+Found = Mapping[float, SecondaryCorrection | None]
 
 
 class CorrectionUpdate(NamedTuple):
@@ -39,8 +40,8 @@ class CorrectedFrames:
         self.clip = clip
         self._is_asked = needs_correction(clip)
         self._corrections: FrameCorrector | None = None
-        self._exact: dict[int, SecondaryCorrection | None] = {}
-        self._rough: dict[int, SecondaryCorrection | None] = {}
+        self._exact: dict[float, SecondaryCorrection | None] = {}
+        self._rough: dict[float, SecondaryCorrection | None] = {}
         self._grounds: dict[int, BaseMotionFrame] = {}
         # Of the last displayed frame.
         self._latest: SecondaryCorrection | None = None
@@ -59,7 +60,7 @@ class CorrectedFrames:
         if self._is_asked and earlier.clip.layer.domain is self.clip.layer.domain:
             self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001
 
-    def at(self, clip: Clip, frame: int) -> SecondaryCorrection | None:
+    def at(self, clip: Clip, frame: float) -> SecondaryCorrection | None:
         """Return the best known correction of a frame; None for another clip."""
         if clip != self.clip or not self._is_asked:
             return None
@@ -69,11 +70,20 @@ class CorrectedFrames:
         """Return whether the clip's frames may have corrections."""
         return clip == self.clip and self._is_asked
 
-    def is_exact(self, clip: Clip, frame: int) -> bool:
+    def is_exact(self, clip: Clip, frame: float) -> bool:
         """Return whether `at` returns the frame's own correction."""
         if clip != self.clip or not self._is_asked:
             return True
         return frame in self._exact
+
+    def compute(self, frame: float, sampler: PoseSampler, carried: ParentMotion) -> None:
+        """Compute the correction of a frame, possibly fractional.
+
+        The sampler belongs to the layer's domain; `carried` is the layer's transform by parents.
+        """
+        if self._corrections is None:
+            self._corrections = FrameCorrector(self.clip, self.clip.layer.variant, sampler, carried)
+        self._exact[frame] = self._corrections.correction_at(frame)
 
     def ground(self, frame: int) -> BaseMotionFrame | None:
         """Return the base frame that tracks are relative to, if computed."""
@@ -111,9 +121,10 @@ class CorrectedFrames:
     @property
     def misses(self) -> Mapping[int, Mapping[int, float]]:
         """Distances in pixels of handles from their track targets, by frame and handle id."""
+        known = {frame: self._exact.get(frame) for frame in self._frames}
         return {
             frame: each.target_errors
-            for frame, each in self._exact.items()
+            for frame, each in known.items()
             if each and each.target_errors
         }
 
@@ -203,7 +214,7 @@ def _find(
     corrections: FrameCorrector, frames: Sequence[int], grounds: Sequence[int] = ()
 ) -> CorrectionUpdate:
     """Compute corrections with base frames for some frames, and base frames for others."""
-    exact = {frame: corrections.correction_at(frame) for frame in frames}
+    exact: Found = {frame: corrections.correction_at(frame) for frame in frames}
     known = {frame: corrections.base_frame_at(frame) for frame in (*frames, *grounds)}
     return CorrectionUpdate(corrections, exact, known)
 

@@ -18,7 +18,6 @@ from app.document import (
     segment_keys,
     segment_time_at,
 )
-from app.motion.deform_mesh import DeformMesh
 from app.motion.inbetween_jobs import (
     AnyInbetweens,
     CachedSegment,
@@ -33,12 +32,12 @@ from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.motion.inbetweens.segment_keys import SegmentKey, segment_key
 from app.motion.inbetweens.slider_stage import apply_correction
-from app.motion.vertices import StreamedVertices, VertexArray, Vertices
+from app.motion.meshes.deform_mesh import DeformMesh
+from app.motion.meshes.vertices import StreamedVertices, VertexArray, Vertices
 from engine.arrays import Complexes
 from engine.interpolation import Inbetweens, InteriorKnot
 
 BUDGET = 2**30  # bytes per cache
-SPARE = 64  # segments that no present clip needs may take this fraction: a 64th
 EXPECTED = 100  # assumed bytes per vertex of a series before the first is built
 # Parts of a clip that a job computes.
 InbetweenPart = Literal["frame", "in-betweens", "fine", "series", "correction"]
@@ -59,7 +58,10 @@ class InbetweenCache:
 
     mesh: DeformMesh
     budget: int = BUDGET  # in bytes
+    spare: int = BUDGET // 64  # bytes that segments which no present clip needs may take
     sampler: PoseSampler | None = None  # of the workers; None until a key or a track moves
+    # Whether poses are sampled in double precision, which takes longer.
+    samples_poses: bool = False
     whole: Clip | None = None  # the newest clip of the document with complete in-betweens
     build: SeriesBuild | None = None  # an unfinished series while no worker builds it
     # In the order of last use, with sizes in bytes, and the largest sizes so far.
@@ -159,7 +161,7 @@ class InbetweenCache:
         triangles = self.mesh.order.triangles(clip, frame)
         found = instead or self._find(clip, moment)
         if isinstance(found, Pose):
-            positions = self.mesh.pose_vertices(found)
+            positions = self._pose_vertices(found)
         elif isinstance(found, SingleFrame):
             positions = found.positions
         elif found is None or not found.is_ready:
@@ -189,6 +191,11 @@ class InbetweenCache:
             if known.single_frame and known.single_frame.weight == moment.weight
             else None
         )
+
+    def _pose_vertices(self, pose: Pose) -> Complexes:
+        if self.samples_poses and self.sampler is not None:
+            return self.sampler.samples(pose).positions
+        return self.mesh.pose_vertices(pose)
 
     def positions(
         self, clip: Clip, frame: float, correction: SecondaryCorrection | None = None
@@ -373,8 +380,9 @@ class InbetweenCache:
     def _make_room(self) -> None:
         """Drop the least needed segments until the rest fits into the budget."""
         present, pinned = self._needed_keys(self._present), self._needed_keys()
-        spare = [pair for pair in self._known if pair not in pinned]
-        excess = sum(sum(self._sizes[pair]) for pair in spare) - self.budget // SPARE
+        # The newest is about to be used.
+        spare = [pair for pair in list(self._known)[:-1] if pair not in pinned]
+        excess = sum(sum(self._sizes[pair]) for pair in spare) - self.spare
         excess = max(excess, self.nbytes - self.budget)
         for pair in (*spare, *(pair for pair in self._known if pair in pinned - present)):
             if excess <= 0:

@@ -1,29 +1,18 @@
 """The displayed frame of a layer: its pose or in-between on a mesh."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
-from app.document import (
-    Attachment,
-    Clip,
-    Document,
-    Layer,
-    Pose,
-    keyed_pose_at,
-    segment_time_at,
-    transform_at,
-)
+from app.document import Clip, Pose, keyed_pose_at, segment_time_at
 from app.motion.corrected_frames import CorrectedFrames
-from app.motion.deform_mesh import DeformMesh, MeshPoints
 from app.motion.inbetween_cache import InbetweenCache
 from app.motion.inbetween_jobs import SingleFrame
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
-from app.motion.parenting.chain import PivotFrame, compose_chain, parent_links
-from app.motion.parenting.parent_transforms import ParentTransforms
-from app.motion.vertices import StreamedVertices, Vertices
+from app.motion.meshes.deform_mesh import DeformMesh, MeshPoints
+from app.motion.meshes.vertices import StreamedVertices, Vertices
+from app.motion.parenting.chain import PivotFrame
 from engine.arrays import Complexes
 from engine.domain import MeshedDomain
 from engine.geometry import IDENTITY_MOTION, RigidMotion
@@ -34,11 +23,10 @@ class LayerFrame:
     """A frame of a layer as drawn, and the data that it was made from."""
 
     clip: Clip
-    frame: int
+    frame: float
     pose: Pose | None  # the displayed pose; None for an in-between
     mesh: DeformMesh
     vertices: Vertices  # of the mesh
-    handles: MeshPoints  # the layer's handles, located in the mesh
     # Displayed until the in-between is computed: one of its two keys, another of their in-betweens,
     # or the same frame of an earlier clip or of another domain.
     placeholder: Pose | SingleFrame | Clip | MeshedDomain | None = None
@@ -53,9 +41,24 @@ class LayerFrame:
         return self.placeholder is None and not self.is_approximate
 
     @property
+    def nbytes(self) -> int:
+        """Bytes of the positions."""
+        return self.positions.nbytes
+
+    @property
     def positions(self) -> Complexes:
         """Positions of the mesh's vertices, (v,)."""
         return self.vertices.positions
+
+    @property
+    def scene_positions(self) -> Complexes:
+        """Positions of the mesh's vertices in the scene, (v,)."""
+        return self.placement.apply(self.positions)
+
+    @property
+    def handles(self) -> MeshPoints:
+        """The layer's handles, located in the mesh."""
+        return self.mesh.locate_handles(self.clip.layer)
 
     @property
     def derivatives(self) -> tuple[Complexes, Complexes]:
@@ -87,7 +90,7 @@ class LayerFrame:
 
 def evaluate_layer(
     clip: Clip,
-    frame: int,
+    frame: float,
     pose: Pose | None,
     stores: Sequence[InbetweenCache],
     earlier: LayerFrame | None,
@@ -147,78 +150,20 @@ def evaluate_layer(
         pose=pose,
         mesh=mesh,
         vertices=vertices,
-        handles=_locate(clip, mesh, earlier),
         placeholder=near,
         correction=correction,
         is_approximate=is_rough,
     )
 
 
-def _is_earlier_state(earlier: LayerFrame, frame: int, store: InbetweenCache, clip: Clip) -> bool:
+def _is_earlier_state(earlier: LayerFrame, frame: float, store: InbetweenCache, clip: Clip) -> bool:
     """Return whether the last displayed frame is this frame before a change of the clip."""
     is_exact = earlier.placeholder is None or isinstance(earlier.placeholder, Clip)
     return is_exact and earlier.frame == frame and not store.has_failed(clip)
 
 
 def _kept(earlier: LayerFrame, clip: Clip) -> LayerFrame:
-    """Return the frame of an earlier clip as a placeholder, with the present handles."""
+    """Return the frame of an earlier clip as a placeholder."""
     if earlier.clip is clip:
         return earlier
-    handles, was = _locate(clip, earlier.mesh, earlier), earlier.placeholder
-    return replace(earlier, clip=clip, handles=handles, placeholder=was or earlier.clip)
-
-
-def place_displayed_frames(
-    document: Document,
-    shown: Mapping[int, LayerFrame],
-    joints: ParentTransforms | None,
-    poses: Mapping[int, Pose],
-    earlier: ParentTransforms | None = None,
-) -> dict[int, LayerFrame]:
-    """Return the displayed frames with the layers' placements in the scene.
-
-    `shown` and `poses` have layer ids as keys; `poses` are displayed poses that are not in the
-    document. Without the document's `joints`, placements have the accuracy of the meshes. So do
-    children of a displayed pose with a correction, which the joints do not contain. Until joints
-    exist, the transforms of an earlier document serve attachments with `keep_world_transform`.
-    """
-    placed, corrected = {}, {each for each in poses if shown[each].correction is not None}
-    for identity, each in shown.items():
-        layer = document.layer(identity)
-        if not layer.attachments:
-            placement = transform_at(document, layer, each.frame)
-        elif joints is None or any(
-            each.id in corrected for each in document.all_ancestors(identity)
-        ):
-            chain = parent_links(document, identity, each.frame)
-            kept = partial(_earlier_transform, earlier, each.frame)
-            placement = compose_chain(
-                chain, lambda layer, place: shown[layer.id].pivot_frame_at(place), kept
-            )
-        else:
-            placement = joints.placement(identity, each.frame, poses)
-        same = placement == each.placement
-        placed[identity] = each if same else replace(each, placement=placement)
-    return placed
-
-
-def _earlier_transform(
-    earlier: ParentTransforms | None, frame: float, layer: Layer, joint: Attachment
-) -> RigidMotion:
-    """Return the transform that an attachment kept in an earlier document, else the identity."""
-    known = {each.id: each for each in earlier.document.layers} if earlier else {}
-    was = known.get(layer.id)
-    if earlier is None or was is None or joint not in earlier.document.attachments_of(was):
-        return IDENTITY_MOTION
-    return earlier.kept_transform(was, joint, frame)
-
-
-def _locate(clip: Clip, mesh: DeformMesh, earlier: LayerFrame | None) -> MeshPoints:
-    if (
-        earlier is not None
-        and earlier.mesh is mesh
-        and earlier.clip.layer.handles == clip.layer.handles
-    ):
-        return earlier.handles
-    places = np.array([handle.position for handle in clip.layer.handles], dtype=np.complex128)
-    return mesh.locate(places, mesh.domain.mesh.vertices)
+    return replace(earlier, clip=clip, placeholder=earlier.placeholder or earlier.clip)

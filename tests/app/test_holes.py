@@ -15,7 +15,7 @@ from app.cut_out import CutOut, build_picture_domain
 from app.document import Document, Handle, Keyframe, Meshing, Pose, Target, clip_of, new_layer
 from app.errors import LissomError
 from app.motion import Animation
-from app.motion.deform_mesh import DeformMesh
+from app.motion.meshes.deform_mesh import DeformMesh
 from app.reports import certify_clip
 from app.solving.drag_solver import fit_map
 from app.storage import load_project, save_project

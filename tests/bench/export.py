@@ -22,14 +22,13 @@ from app.document import (
     Keyframe,
     Meshing,
     PictureFile,
-    clip_of,
     new_layer,
 )
 from app.errors import install_hint
-from app.export import CachedVertices, ExportRequest, FrameRenderer, plan_export
+from app.export import ExportRequest, FrameRenderer, plan_export
 from app.export.writers.png import encode_png
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Animation, bounding_box
+from app.motion import Evaluator, bounding_box
 from app.render import Renderer
 from app.render.gpu.context import create_context
 from app.render.gpu.target import RenderTarget
@@ -72,14 +71,14 @@ def _speed(extent: Extent) -> Table:
     layer = document.layers[0]
     pictures = {layer.id: decode_picture(layer.picture.data, "").rgba}
     context = create_context()
-    poses = {layer.id: CachedVertices(Animation(clip_of(document, layer.id)))}
+    evaluator = Evaluator.exact(document)
     middle = float((extent.frames - 1) // 2)
-    places = poses[layer.id].positions(middle)
+    places = evaluator.evaluate(document, middle).layers[layer.id].scene_positions
     with tempfile.TemporaryDirectory() as folder:
         request = ExportRequest(out=Path(folder), settings=document.export, project="giraffe")
-        plan = plan_export(document, request, poses)
+        plan = plan_export(document, request, evaluator)
         start = time.process_time()
-        painter = FrameRenderer(context, document, pictures, poses, plan)
+        painter = FrameRenderer(context, document, pictures, evaluator, plan)
         posed = painter.pose(middle)
         frame = painter.draw(posed)
         begun = time.process_time() - start

@@ -1,6 +1,7 @@
 """Small animated documents with real pictures, for the tests of exports."""
 
 import io
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -15,6 +16,15 @@ from app.document.keyframe import Keyframe
 from app.document.layer import PictureFile, new_layer
 from app.document.model import Document
 from app.document.settings import FrameRange, Meshing
+from app.motion import (
+    DeformMesh,
+    Evaluator,
+    InbetweenCache,
+    LayerFrame,
+    LayerStages,
+    ParentMotion,
+    VertexArray,
+)
 from engine.arrays import Bytes, Complexes
 from engine.domain.build import MeshedDomain
 from engine.domain.meshing.triangulation import triangulate
@@ -89,13 +99,33 @@ def moving_document(last: int = 6, cut_out: CutOut | None = None) -> Document:
     return altered(document, keys=keys, frames=FrameRange(0, last), variant="nu")
 
 
-class Sliding:
+class Posed(LayerStages):
+    """Stages whose frames are given: vertices of the layer, by a function of the frame."""
+
+    def __init__(self, document: Document, positions: Callable[[float], Complexes]) -> None:
+        layer = document.layers[0]
+        mesh = DeformMesh.fine(layer.domain)
+        super().__init__(layer_id=layer.id, store=InbetweenCache(mesh=mesh))
+        self._positions = positions
+
+    def positions(self, frame: float) -> Complexes:
+        return self._positions(frame)
+
+    def frame(self, document: Document, frame: float, _carried: ParentMotion) -> LayerFrame:
+        clip, mesh = self.clip(document), self.store.mesh
+        triangles = mesh.order.triangles(clip, frame)
+        vertices = VertexArray(positions=self.positions(frame), triangles=triangles)
+        return LayerFrame(clip=clip, frame=frame, pose=None, mesh=mesh, vertices=vertices)
+
+
+class Sliding(Posed):
     """Vertices that move by so much a frame, from where they are at rest in frame 0."""
 
     def __init__(self, document: Document, by: complex) -> None:
-        self._rest = document.layers[0].domain.mesh.vertices
-        self._by = by
+        rest = document.layers[0].domain.mesh.vertices
+        super().__init__(document, lambda frame: rest + by * frame)
 
-    def positions(self, frame: float) -> Complexes:
-        places: Complexes = self._rest + self._by * frame
-        return places
+
+def evaluator_of(*stages: LayerStages) -> Evaluator:
+    """Return an evaluator of given layers."""
+    return Evaluator(layers={each.layer_id: each for each in stages})

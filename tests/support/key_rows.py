@@ -11,8 +11,8 @@ from shapes import regular_polygon
 from app.document.keyframe import Keyframe
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
-from app.motion.deform_mesh import DeformMesh
 from app.motion.inbetween_cache import InbetweenCache
+from app.motion.meshes.deform_mesh import DeformMesh
 from engine.maps import Bounds
 
 TURNS = (1.0, np.exp(0.3j), np.exp(-0.4j), np.exp(0.2j), np.exp(0.5j), np.exp(-0.1j), np.exp(0.1j))

@@ -27,23 +27,24 @@ from app.editor.work.layer_runtime import LayerRuntime
 from app.editor.work.revised import revision_getter
 from app.motion import (
     DeformMesh,
+    Evaluator,
     InbetweenCache,
     InbetweenPart,
+    LayerStages,
     MotionPaths,
     ParentTransforms,
     SeriesBuild,
-    evaluate_layer,
     extent_key,
     find_parent_motion,
     measure_extent,
     parenting_key,
-    place_displayed_frames,
     reuse_corrections,
     trace_paths,
 )
 from app.reports import CorrectedSample, measure_curves
 from app.storage import cut_picture, shrink_picture
 from app.texts import _
+from engine.domain import MeshedDomain
 
 STILL = 0.15  # seconds after which the playhead counts as resting
 MOST_UNASKED = 1000  # frames whose extent is measured unasked
@@ -268,9 +269,7 @@ def _prepares_all(session: Session, project: Project) -> bool:
 
 
 def _clips(project: Project) -> list[tuple[Clip, LayerRuntime]]:
-    return [
-        (clip_of(project.document, layer), each) for layer, each in project.runtimes.layers.items()
-    ]
+    return [(each.clip(project.document), each) for each in project.runtimes.layers.values()]
 
 
 def _make_frames(session: Session, project: Project) -> Iterator[Job]:
@@ -343,7 +342,8 @@ def _prepare(
         def begin(mesh: DeformMesh) -> None:
             setattr(runtime, "fine" if is_fine else "store", InbetweenCache(mesh=mesh))
 
-        return _interval_job(session, kind, runtime, clip, work=partial(make, domain), done=begin)
+        work = partial(_prepared, make, domain)
+        return _interval_job(session, kind, runtime, clip, work=work, done=begin)
     is_edited = runtime is project.layer_runtime and not is_fine
     lacking = store.missing_segments(clip, frame, is_edited=is_edited)
     if store.lacks_sampler(clip):
@@ -359,6 +359,10 @@ def _prepare(
         lacking = lacking[:1]
     prepare = store.segments_job(clip, lacking, runtime.store.sampler)
     return _interval_job(session, kind, runtime, clip, work=prepare, done=store.add)
+
+
+def _prepared(make: Callable[[MeshedDomain], DeformMesh], domain: MeshedDomain) -> DeformMesh:
+    return make(domain).prepared()
 
 
 def _stream(session: Session, project: Project) -> Iterator[Job]:
@@ -503,13 +507,14 @@ def _span(session: Session, project: Project) -> Iterator[Job]:
     clips = _clips(project)
     if extent.follows(source) or not all(each.store.has(clip) for clip, each in clips):
         return
-    corrected = {clip.layer.id: each.corrected for clip, each in clips if each.corrected}
-    if not all(each.is_whole for each in corrected.values()):
+    if not all(each.corrected is None or each.corrected.is_whole for _, each in clips):
         return
-    stores = {layer: runtime.store.snapshot() for layer, runtime in project.runtimes.layers.items()}
-    span = partial(
-        measure_extent, document, stores, project.measured.parent_transforms.value, corrected
-    )
+    stages = {
+        layer: LayerStages(layer_id=layer, store=each.store.snapshot(), corrected=each.corrected)
+        for layer, each in project.runtimes.layers.items()
+    }
+    evaluator = Evaluator(layers=stages, transforms=project.measured.parent_transforms.value)
+    span = partial(measure_extent, document, evaluator)
     yield from _derive(session, SPANNING, extent, source, span)
 
 
@@ -526,31 +531,20 @@ def _show(session: Session, project: Project) -> None:
     frame, document = playback.current_frame(session, project), project.document
     if project.timeline.recording is not None and project.layer_runtime.corrected is not None:
         project.layer_runtime.corrected.lead(frame)
-    shown, comparisons, poses = {}, {}, {}
-    if any(each.shown and each.shown.frame != frame for each in project.runtimes.layers.values()):
+    runtimes = project.runtimes.layers
+    if any(each.shown and each.shown.frame != frame for each in runtimes.values()):
         project.timeline.note_move(session.clock())
-    is_moving = _is_moving(session, project)
-    for clip, runtime in _clips(project):
-        layer, comparison = clip.layer.id, runtime.comparison
-        pose = project.unkeyed_pose if layer == project.selection.active else None
-        if pose is not None:
-            poses[layer] = pose
-        fine = [runtime.fine] if runtime.fine is not None and not is_moving else []
-        stores = [*fine, runtime.store]
-        shown[layer] = evaluate_layer(clip, frame, pose, stores, runtime.shown, runtime.corrected)
-        if comparison is not None:
-            earlier, other = comparison.shown or shown[layer], comparison.clip(document)
-            # An unkeyed pose is the same in both methods.
-            comparisons[layer] = evaluate_layer(other, frame, pose, [runtime.store], earlier)
-    known = project.measured.parent_transforms.value
-    for layer, attached in place_displayed_frames(
-        document, shown, project.current_parent_transforms, poses, known
-    ).items():
-        project.runtimes.layers[layer].shown = attached
-    # This uses the meshes alone, since the exact joints belong to the layers' own methods.
-    for layer, attached in place_displayed_frames(document, comparisons, None, {}, known).items():
-        if (comparison := project.runtimes.layers[layer].comparison) is not None:
-            comparison.shown = attached
+    pose, active = project.unkeyed_pose, project.selection.active
+    poses = {} if pose is None else {active: pose}
+    is_coarse = _is_moving(session, project)
+    displayed = project.evaluator.evaluate(
+        document, frame, "display", poses=poses, is_coarse=is_coarse
+    )
+    # Without transforms by parents, which belong to the layers' own methods. An unkeyed pose is the
+    # same in both methods.
+    others = {layer: each.comparison for layer, each in runtimes.items() if each.comparison}
+    compared = Evaluator(layers=others).evaluate(document, frame, "display", poses=poses)
+    project.runtimes.show(displayed, compared)
 
 
 def _is_moving(session: Session, project: Project) -> bool:

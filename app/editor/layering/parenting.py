@@ -141,7 +141,8 @@ def detach_layer(session: Session, project: Project, child: int) -> None:
     If the layer has other parents at other times, only the present attachment ends.
     """
     shown, layer = project.runtimes.layers[child].shown, project.document.layer(child)
-    joint = layer.attachment_key_at(playback.current_frame(session, project))
+    frame = playback.current_frame(session, project)
+    joint = layer.attachment_key_at(frame)
     if joint is not None and len(layer.attachments) > 1:
         free = Attachment(parent=None, frame=joint.frame, keep_world_transform=True)
         editing.edit_document(
@@ -149,7 +150,7 @@ def detach_layer(session: Session, project: Project, child: int) -> None:
         )
     elif shown is not None:
         editing.edit_document(
-            session, _detach_command(project.document, child, shown.frame, shown.placement)
+            session, _detach_command(project.document, child, frame, shown.placement)
         )
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from app.document import Document
 from app.editor.work.revised import Revised
-from app.export import CachedVertices, ExportPlan
-from app.motion import BoundingBox
+from app.export import ExportPlan
+from app.motion import BoundingBox, Evaluator
 from app.storage import Cancellation
 from engine.arrays import Bytes
 
@@ -21,7 +21,7 @@ class ExportRun:
 
     document: Document
     pictures: Mapping[int, Bytes]
-    poses: Mapping[int, CachedVertices]
+    evaluator: Evaluator
     plan: ExportPlan
     for_clipboard: bool = False
     done: int = 0

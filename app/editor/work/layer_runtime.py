@@ -7,39 +7,33 @@ from app.cut_out import CutOut
 from app.document import Baseline, Clip, Document, History, Layer, PictureFile, Variant, clip_of
 from app.editor.work.derived import Derived
 from app.editor.work.revised import Revised
-from app.motion import CorrectedFrames, DeformMesh, InbetweenCache, LayerFrame, needs_correction
+from app.motion import DeformMesh, InbetweenCache, LayerStages, SceneFrame, needs_correction
 from app.solving import Rig
 from app.storage import CutOutResult, Picture, cut_picture, decode_picture
 from engine.arrays import Bytes
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class ComparisonRuntime:
-    """A layer animated by another method, for comparison with its own."""
+class ComparisonRuntime(LayerStages):
+    """A layer animated by another method, for comparison with its own; both share their cache."""
 
     original: Layer  # the layer with its own method
     layer: Layer  # the layer with the other variant, if the method is a variant
     method: Variant | Baseline
-    shown: LayerFrame | None = None
 
     def clip(self, document: Document) -> Clip:
-        """Return the layer in the time of its scene."""
+        """Return the compared layer in the time of its document."""
         baseline = self.method if isinstance(self.method, Baseline) else None
-        return replace(clip_of(document, self.layer.id), layer=self.layer, baseline=baseline)
+        return replace(clip_of(document, self.layer_id), layer=self.layer, baseline=baseline)
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class LayerRuntime:
-    """The window's runtime values of a layer: decoded picture, caches and shown frame."""
+class LayerRuntime(LayerStages):
+    """The window's runtime values of a layer: decoded picture, cached stages and shown frame."""
 
     file: PictureFile
     picture: Picture  # the decoded picture
     is_opaque: bool  # whether the picture has no transparent pixels
-    # In-betweens on a coarse mesh, and on the layer's own mesh if it is finer and prepared.
-    store: InbetweenCache
-    fine: InbetweenCache | None = None
-    shown: LayerFrame | None = None  # None before the first frame of the window
-    corrected: CorrectedFrames | None = None  # corrections of the layer's frames
     rig: Rig | None = None  # for solving poses; None before the first one
     cut: Derived[CutOut, CutOutResult]  # the picture after the newest cut-out
     # The small picture for the list of layers.
@@ -53,10 +47,11 @@ class LayerRuntime:
         `among` is the number of layers.
         """
         return cls(
+            layer_id=clip.layer.id,
             picture=picture,
             is_opaque=picture.is_opaque,
             file=clip.layer.picture,
-            store=InbetweenCache(mesh=DeformMesh.coarse(clip.layer.domain, among=among)),
+            store=InbetweenCache(mesh=DeformMesh.coarse(clip.layer.domain, among=among).prepared()),
             cut=Derived(
                 cut_picture(picture, clip.layer.cut_out, is_alone=among == 1), clip.layer.cut_out
             ),
@@ -93,8 +88,22 @@ class LayerRuntimes(Revised):
     """The runtimes of a document's layers, as many as it has layers."""
 
     layers: dict[int, LayerRuntime]  # by layer id
+    # The displayed frame, and the same frame by the compared method.
+    displayed: SceneFrame | None = None
+    compared: SceneFrame | None = None
     # Decoded pictures, also of layers that undo may bring back.
     pictures: dict[PictureFile, Picture] = field(default_factory=dict)
+
+    def show(self, displayed: SceneFrame, compared: SceneFrame) -> None:
+        """Display a frame; its layers stay until the next ones are known."""
+        for layer, each in displayed.layers.items():
+            self.layers[layer].shown = each
+        for layer, each in compared.layers.items():
+            if (comparison := self.layers[layer].comparison) is not None:
+                comparison.shown = each
+        # An equal frame is no change.
+        self.displayed = self.displayed if displayed == self.displayed else displayed
+        self.compared = self.compared if compared == self.compared else compared
 
     def keep_picture(self, file: PictureFile, picture: Picture) -> None:
         """Keep a decoded picture for a layer that will use it."""

@@ -1,6 +1,6 @@
 """Transforms of attached layers at any time (Section 7, "a user curve for the anchor")."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 
 import numpy as np
@@ -244,20 +244,6 @@ def layer_animation(
     return Animation(clip_of(document, identity), sampler=sampler, carried=carried)
 
 
-class PlacedAnimation:
-    """The motion of a layer with its placement in the scene."""
-
-    def __init__(self, animation: Animation, joints: ParentTransforms) -> None:
-        self._animation = animation
-        animation.carried = partial(joints.parent_transform, animation.clip.layer.id)
-        self._joints = joints
-
-    def positions(self, frame: float) -> Complexes:
-        """Return the positions (m,) in the scene at a frame, possibly fractional."""
-        placement = self._joints.placement(self._animation.clip.layer.id, frame)
-        return placement.apply(self._animation.positions(frame))
-
-
 def parenting_key(document: Document) -> tuple[object, ...]:
     """Return the values that determine the transforms; empty without attachments."""
     involved = [
@@ -267,15 +253,6 @@ def parenting_key(document: Document) -> tuple[object, ...]:
         for each in (child, *document.all_ancestors(child.id))
     ]
     return tuple(clip_of(document, each.id) for each in dict.fromkeys(involved))
-
-
-def placed_animations(
-    animations: Iterable[Animation], document: Document
-) -> dict[int, PlacedAnimation]:
-    """Return the layers' animations in the scene, by layer id."""
-    own = {animation.clip.layer.id: animation for animation in animations}
-    joints = ParentTransforms(document, {identity: each.sampler for identity, each in own.items()})
-    return {identity: PlacedAnimation(each, joints) for identity, each in own.items()}
 
 
 def _points(document: Document) -> dict[int, list[complex]]:

@@ -1,19 +1,12 @@
 """The viewport's picture: the drawing, its ghosts, and all overlays of the renderer."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from app.document import (
-    Layer,
-    composite_layers,
-    is_visible,
-    without_foreign_clips,
-)
 from app.editor import HeatMap, LayerRuntime, Project, Session
-from app.motion import DeformMesh, LayerFrame
+from app.motion import DeformMesh, LayerFrame, SceneFrame
 from app.render import Heat, Painted, Renderer, Scene, Wireframe
 from app.render.gpu.target import RenderTarget
 from app.ui.style.theme import PALETTES
@@ -176,7 +169,6 @@ def _scene(session: Session, project: Project, shown: LayerFrame, drawing: GpuRe
             meshes=drawing.cut_view().meshes(),
             discs=mark_holes(project, palette, scale) if session.tools.mode == "holes" else (),
         )
-    shows = {layer: runtime.shown for layer, runtime in project.runtimes.layers.items()}
     heat = None
     if session.display.tint is not None:
         heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.6, two_sided=True)
@@ -185,7 +177,7 @@ def _scene(session: Session, project: Project, shown: LayerFrame, drawing: GpuRe
         heat = Heat(low=low, high=high)
     wireframe = Wireframe(colour=to_rgba(palette.text, 0.35)) if overlays.wireframe else None
     lines, discs = mark_all(session, project, shown, palette)
-    meshes = _posed(session, project, shows, drawing)
+    meshes = _posed(session, project, project.runtimes.displayed, drawing)
     return Scene(
         background=make_backdrop(
             session.settings.preferences.backdrop, palette, drawing.brightness, pixel_scale(session)
@@ -204,12 +196,7 @@ def _comparison_scene(
     session: Session, project: Project, scene: Scene, drawing: GpuResources
 ) -> Scene:
     """Return the scene by the compared method, without ghosts."""
-    shows = {
-        layer: runtime.comparison.shown
-        for layer, runtime in project.runtimes.layers.items()
-        if runtime.comparison
-    }
-    meshes = _posed(session, project, shows, drawing, number=COMPARISON)
+    meshes = _posed(session, project, project.runtimes.compared, drawing, number=COMPARISON)
     comparison = replace(scene, meshes=meshes, ghosts=())
     # Handles are at the positions of the drawing's own method. Beside it they would be wrong.
     is_beside = (
@@ -221,42 +208,30 @@ def _comparison_scene(
 def _posed(
     session: Session,
     project: Project,
-    shows: Mapping[int, LayerFrame | None],
+    frame: SceneFrame | None,
     drawing: GpuResources,
     *,
     number: int = 0,
 ) -> tuple[Painted, ...]:
-    """Return the visible layers in the document's order: the last is in front."""
-    heat_map = session.display.overlays.heat_map
-    poses = {}
-    document = project.document
-    for layer in document.layers:
-        shown = shows[layer.id]
-        if shown is None or not is_visible(document, layer, shown.frame):
-            continue
-        if project.layer_list.solo and layer.id not in project.layer_list.solo:
-            continue
-        pose = drawing.drawn_mesh(layer.id, shown.mesh, number).pose(
+    """Return the visible layers of a frame, from back to front."""
+    if frame is None:
+        return ()
+    heat_map, solo, poses = session.display.overlays.heat_map, project.layer_list.solo, {}
+    scene = frame.alone(solo) if solo else frame
+    for layer, shown in scene.visible_layers.items():
+        poses[layer] = drawing.drawn_mesh(layer, shown.mesh, number).pose(
             shown.vertices, placement=shown.placement
         )
-        poses[layer.id] = pose
         if session.display.tint is not None:
-            drawing.tint(pose, _tinted(session, project, drawing, layer, shown))
+            drawing.tint(poses[layer], _tinted(session, project, drawing, shown))
         elif heat_map != "none":
-            drawing.heat(pose, shown, heat_map)
-    frame = max((shown.frame for shown in shows.values() if shown), default=0)
-    alone = (
-        without_foreign_clips(document, project.layer_list.solo)
-        if project.layer_list.solo
-        else document
-    )
-    return composite_layers(alone, poses, frame)
+            drawing.heat(poses[layer], shown, heat_map)
+    return scene.composite(poses)
 
 
-def _tinted(
-    session: Session, project: Project, drawing: GpuResources, layer: Layer, shown: LayerFrame
-) -> Floats:
+def _tinted(session: Session, project: Project, drawing: GpuResources, shown: LayerFrame) -> Floats:
     """Return the colour values of a layer's vertices, (v,), −1 to 1."""
+    layer = shown.clip.layer
     if layer.id != project.selection.active:
         return np.zeros(len(shown.positions))
     if session.display.tint == "stiffness":

@@ -44,7 +44,7 @@ class Exporter:
     def _draw(self, session: Session, run: ExportRun) -> None:
         if self._steps is None or self._maker is None:
             self._plan = run.plan
-            given = run.document, run.pictures, run.poses, run.plan
+            given = run.document, run.pictures, run.evaluator, run.plan
             is_drawn = EXPORT_FORMATS[run.plan.format].is_drawn
             self._maker = FrameRenderer(self._context, *given) if is_drawn else MeshExport(*given)
             self._steps = self._maker.run(waits=False, cancellation=session.export.cancellation)

@@ -8,9 +8,9 @@ from layered import blob, openraster
 from numpy.testing import assert_allclose
 from PIL import Image
 
-from app.document import ExportSettings, Meshing, clip_of
-from app.export import CachedVertices, ExportRequest, FrameRenderer, plan_export
-from app.motion import Animation
+from app.document import ExportSettings, Meshing
+from app.export import ExportRequest, FrameRenderer, plan_export
+from app.motion import Evaluator
 from app.render.gpu.context import create_context
 from app.storage import cut_picture, flatten_layers, open_layered
 
@@ -80,11 +80,11 @@ def test_a_frame_looks_as_the_file_says(opened, tmp_path):
     document = opened.document
     settings = ExportSettings(format="picture", framing="canvas")
     request = ExportRequest(out=tmp_path / "a.png", settings=settings, project="walk")
-    poses = {f.id: CachedVertices(Animation(clip_of(document, f.id))) for f in document.layers}
+    evaluator = Evaluator.exact(document)
     pictures = {identity: picture.rgba for identity, picture in opened.pictures.items()}
     context = create_context()
     painter = FrameRenderer(
-        context, document, pictures, poses, plan_export(document, request, poses)
+        context, document, pictures, evaluator, plan_export(document, request, evaluator)
     )
     frame = painter.draw(painter.pose(0))
     painter.release()

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from animations import PARTED, moving_document
+from animations import PARTED, Posed, evaluator_of, moving_document
 from documents import altered
 from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
@@ -29,7 +29,6 @@ from app.document import (
 )
 from app.errors import LissomError
 from app.export import (
-    CachedVertices,
     ExportRequest,
     MeshExport,
     check_request,
@@ -37,7 +36,7 @@ from app.export import (
     with_reduced_meshes,
 )
 from app.export_formats import MeshOptions
-from app.motion import Animation
+from app.motion import Animation, Evaluator
 from app.storage import decode_picture, load_project, sample_images
 from engine.arrays import Complexes, Floats
 from engine.domain import find_closed_cuts
@@ -62,9 +61,9 @@ def exported(document, out, chosen=None):
     request = ExportRequest(out=out, settings=chosen or settings(), project="walk")
     check_request(document, request)
     light = with_reduced_meshes(document, request.settings.shapes.triangles)
-    poses = {f.id: CachedVertices(animation_of(clip_of(light, f.id))) for f in light.layers}
+    evaluator = Evaluator.exact(light)
     pictures = {f.id: decode_picture(f.picture.data, "").rgba for f in light.layers}
-    maker = MeshExport(light, pictures, poses, plan_export(light, request, poses))
+    maker = MeshExport(light, pictures, evaluator, plan_export(light, request, evaluator))
     steps = list(maker.run())
     assert steps == sorted(steps)
     assert steps[-1] == len(maker._plan.times)
@@ -435,17 +434,16 @@ def test_rates_are_refused_where_there_are_no_pictures(tmp_path):
 def test_a_model_that_ends_early_is_not_there(tmp_path, ending):
     document = moving_document()
 
-    class Broken(Animation):
-        def positions(self, frame):
-            if frame > 3 and ending == "failed":
-                raise LissomError("it cannot be posed")
-            return super().positions(frame)
+    def positions(frame):
+        if frame > 3 and ending == "failed":
+            raise LissomError("it cannot be posed")
+        return animation_of(clip_of(document, 0)).positions(frame)
 
     request = ExportRequest(out=tmp_path / "a.glb", settings=settings(), project="a")
     canvas = replace(request, settings=replace(request.settings, framing="canvas"))
-    poses = {0: CachedVertices(Broken(clip_of(document, 0)))}
+    evaluator = evaluator_of(Posed(document, positions))
     pictures = {0: decode_picture(document.layers[0].picture.data, "").rgba}
-    steps = MeshExport(document, pictures, poses, plan_export(document, canvas, poses)).run(
+    steps = MeshExport(document, pictures, evaluator, plan_export(document, canvas, evaluator)).run(
         waits=False
     )
     if ending == "closed":

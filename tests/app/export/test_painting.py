@@ -8,7 +8,7 @@ from pathlib import Path
 import moderngl
 import numpy as np
 import pytest
-from animations import BLOB, PARTED, Sliding, still_document
+from animations import BLOB, PARTED, Posed, Sliding, evaluator_of, still_document
 from documents import altered
 from numpy.testing import assert_array_equal
 
@@ -16,7 +16,6 @@ from app.document import CAMERA, OPACITY, Camera, FrameRange, Key
 from app.document.model import Document
 from app.errors import LissomError
 from app.export.frame_renderer import FrameRenderer
-from app.export.frame_vertices import CachedVertices, FrameVertices
 from app.export.plan import ExportPlan, ExportRequest, plan_export
 from engine.arrays import Bytes, Complexes
 
@@ -28,29 +27,29 @@ def document() -> Document:
     return still_document()
 
 
-def plan_of(document: Document, poses: FrameVertices, **settings: object) -> ExportPlan:
+def plan_of(document: Document, poses: Posed, **settings: object) -> ExportPlan:
     settings_ = replace(document.export, **({"framing": "canvas"} | settings))
     return plan_export(
         document,
         ExportRequest(out=Path("out"), settings=settings_, project="walk"),
-        {0: CachedVertices(poses)},
+        evaluator_of(poses),
     )
 
 
 @contextmanager
 def drawing(
-    gl: moderngl.Context, document: Document, poses: FrameVertices, **settings: object
+    gl: moderngl.Context, document: Document, poses: Posed, **settings: object
 ) -> Iterator[Callable[[float], Bytes]]:
     painter = FrameRenderer(
-        gl, document, {0: BLOB}, {0: CachedVertices(poses)}, plan_of(document, poses, **settings)
+        gl, document, {0: BLOB}, evaluator_of(poses), plan_of(document, poses, **settings)
     )
     yield lambda frame: painter.draw(painter.pose(frame))
     painter.release()
 
 
-def notices(gl: moderngl.Context, document: Document, poses: FrameVertices, **settings: object):
+def notices(gl: moderngl.Context, document: Document, poses: Posed, **settings: object):
     painter = FrameRenderer(
-        gl, document, {0: BLOB}, {0: CachedVertices(poses)}, plan_of(document, poses, **settings)
+        gl, document, {0: BLOB}, evaluator_of(poses), plan_of(document, poses, **settings)
     )
     for frame in range(11):
         painter.pose(frame)
@@ -151,15 +150,13 @@ def test_a_larger_canvas_centres_the_picture(gl, document):
     assert not frame[:, :10].any()
 
 
-class Folding:
+class Folding(Posed):
     """The left side of a drawing bends, the more in later frames, until it lies over the right."""
 
     def __init__(self, document: Document) -> None:
-        self._rest = document.layers[0].domain.mesh.vertices
-
-    def positions(self, frame: float) -> Complexes:
-        left = np.minimum(self._rest.real - 60, 0)
-        return self._rest + frame / 48 * left**2 / 60
+        rest = document.layers[0].domain.mesh.vertices
+        left = np.minimum(rest.real - 60, 0)
+        super().__init__(document, lambda frame: rest + frame / 48 * left**2 / 60)
 
 
 def test_fewer_triangles_draw_the_same(gl, monkeypatch):
@@ -170,9 +167,7 @@ def test_fewer_triangles_draw_the_same(gl, monkeypatch):
     for many in (24, 1_000_000):
         monkeypatch.setattr("app.export.frame_renderer._MANY", many)
         painters.append(
-            FrameRenderer(
-                gl, document, {0: BLOB}, {0: CachedVertices(poses)}, plan_of(document, poses)
-            )
+            FrameRenderer(gl, document, {0: BLOB}, evaluator_of(poses), plan_of(document, poses))
         )
     for frame in (0.0, 13.0, 48.0):
         posed = [painter.pose(frame) for painter in painters]
@@ -187,16 +182,15 @@ def test_fewer_triangles_draw_the_same(gl, monkeypatch):
 
 
 def test_a_frame_that_fails_is_an_error_that_names_it(gl, document):
-    class Failing(Sliding):
-        def positions(self, frame: float):
-            places = super().positions(frame)
-            if frame == 2:
-                places[0] = complex("inf")
-            if frame == 3:
-                gl.enable_direct(0xFFFF)  # no such switch: OpenGL notes an error
-            return places
+    def failing(frame: float) -> Complexes:
+        places = document.layers[0].domain.mesh.vertices.copy()
+        if frame == 2:
+            places[0] = complex("inf")
+        if frame == 3:
+            gl.enable_direct(0xFFFF)  # no such switch: OpenGL notes an error
+        return places
 
-    with drawing(gl, document, Failing(document, 0)) as draw:
+    with drawing(gl, document, Posed(document, failing)) as draw:
         draw(1.0)
         with pytest.raises(LissomError, match=r"frame 2 cannot be drawn.*not finite"):
             draw(2.0)
@@ -255,9 +249,7 @@ def test_a_view_that_is_turned_shows_what_a_turned_camera_does(gl, document):
     poses = Sliding(document, 0)
     plan = plan_of(document, poses)
     view = replace(plan.view, turn=complex(np.exp(0.3j)))
-    painter = FrameRenderer(
-        gl, document, {0: BLOB}, {0: CachedVertices(poses)}, replace(plan, view=view)
-    )
+    painter = FrameRenderer(gl, document, {0: BLOB}, evaluator_of(poses), replace(plan, view=view))
     frame = painter.draw(painter.pose(0.0)).astype(int)
     painter.release()
     assert np.abs(frame - still(gl, with_camera(document, key))).max() <= 2

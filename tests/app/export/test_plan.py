@@ -3,7 +3,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from animations import BLOB, Sliding, still_document
+from animations import BLOB, Posed, Sliding, evaluator_of, still_document
 from messages import says
 from numpy.testing import assert_allclose
 
@@ -11,7 +11,6 @@ from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 from app.export.destination import FRAMES_TO_FILE, NAMED_LIKE_FILE
-from app.export.frame_vertices import CachedVertices, FrameVertices
 from app.export.plan import ExportPlan, ExportRequest, check_request, plan_export
 from app.storage import NO_FOLDER
 
@@ -26,7 +25,7 @@ def document() -> Document:
 def plan_of(
     document: Document,
     out: Path,
-    poses: FrameVertices | None = None,
+    poses: Sliding | None = None,
     *,
     fps: float | None = None,
     **settings: object,
@@ -35,7 +34,7 @@ def plan_of(
         out=out, settings=replace(document.export, **settings), project="walk", fps=fps
     )
     check_request(document, request)
-    return plan_export(document, request, {0: CachedVertices(poses or Sliding(document, 0))})
+    return plan_export(document, request, evaluator_of(poses or Sliding(document, 0)))
 
 
 def test_by_default_the_frames_show_all_of_the_motion(document, tmp_path):
@@ -135,15 +134,14 @@ def test_backgrounds_are_colours_or_none(document, tmp_path):
 
 
 def test_a_pose_that_is_not_finite_is_refused_before_anything_is_written(document, tmp_path):
-    class Broken(Sliding):
-        def positions(self, frame: float):
-            places = super().positions(frame)
-            if frame == 3:
-                places[5] = complex("nan")
-            return places
+    def broken(frame: float):
+        places = document.layers[0].domain.mesh.vertices.copy()
+        if frame == 3:
+            places[5] = complex("nan")
+        return places
 
     with pytest.raises(LissomError, match="frame 3 cannot be drawn"):
-        plan_of(document, tmp_path / "frames", Broken(document, 0), framing="fit")
+        plan_of(document, tmp_path / "frames", Posed(document, broken), framing="fit")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -20,10 +20,9 @@ from app.document import (
     ExportSettings,
     FrameRange,
     Group,
-    clip_of,
 )
-from app.export import CachedVertices, ExportRequest, FrameRenderer, MeshExport, plan_export
-from app.motion import Animation
+from app.export import ExportRequest, FrameRenderer, MeshExport, plan_export
+from app.motion import Evaluator
 from app.render.gpu.context import create_context
 from app.storage import decode_picture
 from engine.arrays import Bytes
@@ -60,13 +59,13 @@ def exported(document, out, **settings):
     """Export a page; return how the renderer draws a frame of it."""
     chosen = ExportSettings(format="html", size=SIZE, **settings)
     request = ExportRequest(out=out, settings=chosen, project="walk")
-    poses = {f.id: CachedVertices(Animation(clip_of(document, f.id))) for f in document.layers}
+    evaluator = Evaluator.exact(document)
     pictures = {f.id: decode_picture(f.picture.data, "").rgba for f in document.layers}
-    plan = plan_export(document, request, poses)
-    list(MeshExport(document, pictures, poses, plan).run())
+    plan = plan_export(document, request, evaluator)
+    list(MeshExport(document, pictures, evaluator, plan).run())
 
     def draw(gl, frame) -> Bytes:
-        painter = FrameRenderer(gl, document, pictures, poses, plan)
+        painter = FrameRenderer(gl, document, pictures, evaluator, plan)
         picture = painter.draw(painter.pose(frame))
         painter.release()
         return picture

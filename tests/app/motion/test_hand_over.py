@@ -16,7 +16,6 @@ from app.document import (
     FrameRange,
     Spring,
     channel_commands,
-    clip_of,
     cycle_commands,
     layer_commands as layers,
     parent_label,
@@ -26,7 +25,7 @@ from app.document.keyframe import Handle, Target
 from app.document.layers.attachments import Attachment
 from app.document.model import PARENT_CIRCLE
 from app.errors import LissomError
-from app.motion import Animation, ParentTransforms, placed_animations, reparent_in_place
+from app.motion import Evaluator, ParentTransforms, reparent_in_place
 from engine.geometry import IDENTITY_MOTION
 
 TOL = 1e-9 * 200
@@ -137,11 +136,9 @@ def test_hands_may_take_turns_in_carrying_each_other(hands):
             springs=(Spring(handle=handle.id, frequency=2.0, damping=0.3),),
         )
         document = document.with_layer(layer)
-    animations = placed_animations(
-        [Animation(clip_of(document, each), points=np.array([CENTRE])) for each in (0, 2)], document
-    )
+    found = Evaluator.exact(document).evaluate(document, 33.0, only=(0, 2)).layers
     for each in (0, 2):
-        assert np.isfinite(animations[each].positions(33.0)).all()
+        assert np.isfinite(found[each].scene_positions).all()
 
 
 def test_circles_at_any_frame_are_refused_by_name(hands):

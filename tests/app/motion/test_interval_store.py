@@ -34,7 +34,6 @@ from app.motion import (
     VertexArray,
     evaluate_layer,
 )
-from app.motion.inbetween_cache import SPARE
 from app.motion.inbetween_jobs import SeriesBuild, segment_key
 from engine import streaming
 from engine.variant import Variant
@@ -270,7 +269,7 @@ def test_what_nothing_present_needs_makes_room_and_the_oldest_first(clip, prepar
     # Room for the present one, and not quite for both of the others.
     own = sum(sum(prepared.segment(clip, i).sizes) for i in range(3))
     spare = size - own
-    prepared.budget = SPARE * (spare - 1)
+    prepared.spare = spare - 1
     prepared.set_needed_clips([clip], [others[0]], 0)
     prepared.set_needed_clips([clip], [], 0)
     assert prepared.has(clip)

@@ -16,7 +16,7 @@ from app.document import (
     layer_commands as layers,
     transform_at,
 )
-from app.motion import Animation, ParentTransforms, placed_animations
+from app.motion import Animation, Evaluator, ParentTransforms
 from app.motion.parenting.parent_transforms import find_parent_motion
 
 MOVES = (
@@ -48,9 +48,10 @@ def test_a_layer_is_as_distorted_and_certified_as_without():
     assert np.array_equal(one.fz, other.fz)
     assert np.array_equal(one.fzbar, other.fzbar)
     assert [key.pose for key in still.layer(0).keys] == [key.pose for key in moved.layer(0).keys]
-    attached = placed_animations([Animation(clip_of(moved, 0), points=points)], moved)[0]
+    frame = Evaluator.exact(moved).evaluate(moved, 13.0).layers[0]
     motion = transform_at(moved, moved.layer(0), 13.0)
-    assert_allclose(attached.positions(13.0), motion.apply(one.positions), rtol=0, atol=1e-9)
+    own = Animation(clip_of(still, 0)).positions(13.0)
+    assert_allclose(frame.scene_positions, motion.apply(own), rtol=0, atol=1e-9)
 
 
 def test_layer_is_not_moved_by_itself_while_attached():

@@ -29,13 +29,14 @@ from app.document import (
 from app.motion import (
     Animation,
     DeformMesh,
+    Evaluator,
     InbetweenCache,
+    LayerStages,
     ParentTransforms,
     bounding_box,
     evaluate_layer,
     find_parent_motion,
     measure_extent,
-    placed_animations,
     reuse_corrections,
     trace_paths,
 )
@@ -505,13 +506,15 @@ def test_extent_and_exports_are_of_the_shown_frames():
     while (work := frames.missing(document, 0, {0: store.sampler})) is not None:
         frames.take(work())
     animation = Animation(clip)
-    (attached,) = placed_animations([Animation(clip)], document).values()
     places = [animation.positions(float(frame)) for frame in range(9)]
-    assert_allclose(attached.positions(3.0), places[3], rtol=0, atol=1e-9)
-    found = measure_extent(document, {0: store}, corrected={0: frames})
+    exact = Evaluator.exact(document).evaluate(document, 3.0).layers[0]
+    assert_allclose(exact.scene_positions, places[3], rtol=0, atol=1e-9)
+    stages = LayerStages(layer_id=0, store=store, corrected=frames)
+    found = measure_extent(document, Evaluator(layers={0: stages}))
     # On the screen positions have single precision.
     assert_allclose(found, bounding_box(np.concatenate(places)), rtol=0, atol=1e-2)
-    bare = measure_extent(document, {0: store})
+    stages = LayerStages(layer_id=0, store=store)
+    bare = measure_extent(document, Evaluator(layers={0: stages}))
     assert found.upper.real - bare.upper.real > 5
     shown = store.vertices(clip, 3, correction=frames.at(clip, 3)).positions
     assert_allclose(shown, places[3], rtol=0, atol=1e-2)

@@ -146,7 +146,7 @@ def star_and_clip(seed):
 
 @pytest.fixture(autouse=True)
 def _always_coarse(monkeypatch):
-    monkeypatch.setattr("app.motion.deform_mesh.FINER", 1)
+    monkeypatch.setattr("app.motion.meshes.deform_mesh.FINER", 1)
 
 
 @pytest.mark.parametrize(

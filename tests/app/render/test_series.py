@@ -7,7 +7,7 @@ from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.errors import LissomError
-from app.motion.vertices import StreamedVertices, VertexArray
+from app.motion.meshes.vertices import StreamedVertices, VertexArray
 from app.render.drawn_mesh import DrawnMesh, shader_is_faster
 from app.render.gpu.mesh import GpuMesh, PosedMesh
 from app.render.gpu.programs import set_uniforms

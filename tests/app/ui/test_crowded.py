@@ -12,7 +12,7 @@ from scenes import PICTURE, drawn
 from app.document import layer_commands
 from app.document.keyframe import Target
 from app.document.layer import Handle
-from app.editor.actions import editing, frame_update
+from app.editor.actions import editing
 from app.editor.actions.project_files import saving
 from app.editor.layering import layer_list
 from app.editor.parts.timeline import TimeRangeView
@@ -112,16 +112,16 @@ def test_layer_under_the_pointer_is_sought_among_those_there(window, monkeypatch
 
 
 def test_layers_are_settled_only_when_something_changed(window, monkeypatch):
-    asked, show_layer = [], frame_update.show
+    asked, evaluate = [], evaluator.evaluate_layer
 
     def counted(*given):
         asked.append(1)
-        return show_layer(*given)
+        return evaluate(*given)
 
     with window.session.jobs.held():
         show(window, many_layers())
         window.frames(3)
-        monkeypatch.setattr(frame_update, "show", counted)
+        monkeypatch.setattr(evaluator, "evaluate_layer", counted)
         window.frames(3)
         assert not asked
         editing.edit_document(window.session, layer_commands.rename_layer(1, "arm"))

@@ -36,8 +36,7 @@ from app.editor.layering.layer_list import toggle_clipping
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import PARENT_IS_DESCENDANT, detach_layer
 from app.editor.layering.pictures import add_layers
-from app.motion import ParentTransforms
-from app.motion.layer_frame import place_displayed_frames
+from app.motion import Evaluator, ParentTransforms
 from app.motion.parenting.parent_transforms import layer_animation
 from app.storage import Autosave, SourceInfo, make_still_layer
 from app.ui.style.theme import PALETTES
@@ -301,12 +300,12 @@ def test_child_of_a_posed_parent_is_placed_with_the_correction(swung):
     # The pose alone is elsewhere than the parent, which is drawn with a correction.
     poses = {body: swung.document.layer(body).keys[0].pose}
     shown[body] = replace(shown[body], correction=object())
-    joints = swung.current_parent_transforms
-    placed = place_displayed_frames(swung.document, shown, joints, poses)
-    drawn = place_displayed_frames(swung.document, shown, None, poses)
+    exact = Evaluator(layers={}, transforms=swung.current_parent_transforms)
+    placed = exact.placed(swung.document, shown, poses)
+    drawn = Evaluator(layers={}).placed(swung.document, shown, poses)
     assert placed[arm].placement == drawn[arm].placement
     shown[body] = replace(shown[body], correction=None)
-    alone = place_displayed_frames(swung.document, shown, joints, poses)
+    alone = exact.placed(swung.document, shown, poses)
     assert abs(alone[arm].placement.shift - drawn[arm].placement.shift) > 5
 
 

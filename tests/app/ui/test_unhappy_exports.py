@@ -30,6 +30,7 @@ from app.editor.parts.dialogs import Question
 from app.export.writers.gif import GifWriter
 from app.export.writers.png import PngSequence
 from app.export.writers.video import VideoWriter
+from app.motion import evaluator
 from app.motion.inbetweens import pose_sampler
 from app.storage import SAME_FILE
 from app.storage.assets import sample_images
@@ -287,12 +288,12 @@ def test_cancel_is_answered_at_once_while_it_is_prepared(window, tmp_path, held,
     settings = ExportSettings(format=format_, size=SIZE, framing="canvas", frames=few)
     editing.edit_document(session, scene_commands.set_export(settings))
     window.settle()
-    where = {"sites": (exporting, "PoseSampler"), "intervals": (pose_sampler, "prepare_inbetweens")}
+    where = {"sites": (evaluator, "PoseSampler"), "intervals": (pose_sampler, "prepare_inbetweens")}
     worker = held(*where[stage])
     window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
     assert (session.export.run is None) == (stage == "sites")
-    left = weakref.ref(session.export.run.poses[0]) if session.export.run else None
+    left = session.export.run and weakref.ref(session.export.run.evaluator.layers[0].store.mesh)
     window.act(exporting.cancel_export)
     window.frames()
     assert not worker.has_waited_in_vain

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from app.document import Clip, ExportSettings, FrameRange, clip_of
+from app.document import ExportSettings, FrameRange
 from app.editor import pending_changes
 from app.editor.action import Action, do
 from app.editor.actions.action_spec import named_action
@@ -20,7 +20,6 @@ from app.editor.work.jobs import JobKind
 from app.editor.work.pending_change import DeferredAction
 from app.errors import LissomError, display_name
 from app.export import (
-    CachedVertices,
     ExportRequest,
     check_request,
     clipboard_program,
@@ -30,7 +29,7 @@ from app.export import (
     with_reduced_meshes,
 )
 from app.export_formats import EXPORT_FORMATS, STILL_FORMAT
-from app.motion import Animation, PoseSampler, extent_key, placed_animations
+from app.motion import Evaluator, extent_key
 from app.storage import make_settings_folder, temporary_picture
 from app.texts import _, ngettext
 
@@ -162,10 +161,7 @@ def _prepare(
         if frames is not None and unkeyed.frame in frames:
             document = key_pose_command(session, project, unkeyed)(document)
     pictures = {layer: each.cut.value.texture for layer, each in project.runtimes.layers.items()}
-    samplers = {
-        layer: (runtime.fine or runtime.store).sampler or runtime.store.sampler
-        for layer, runtime in project.runtimes.layers.items()
-    }
+    samplers = project.samplers
     extent = project.measured.extent
     box = extent.value if extent.follows(extent_key(document)) else None
     cancellation = session.export.cancellation
@@ -173,27 +169,11 @@ def _prepare(
     def work() -> ExportRun:
         detail = request.settings.shapes.triangles
         exported = document if format_.is_drawn else with_reduced_meshes(document, detail)
-        alone = [
-            _animation(clip_of(exported, layer.id), samplers[layer.id]) for layer in exported.layers
-        ]
-        attached = placed_animations(alone, exported)
-        poses = {
-            layer: CachedVertices(animation, cancellation) for layer, animation in attached.items()
-        }
-        plan = plan_export(exported, request, poses, box)
-        return ExportRun(document=exported, pictures=pictures, poses=poses, plan=plan)
+        evaluator = Evaluator.exact(exported, samplers, cancellation.check)
+        plan = plan_export(exported, request, evaluator, box)
+        return ExportRun(document=exported, pictures=pictures, evaluator=evaluator, plan=plan)
 
     run_job(session, PREPARING, work, begun)
-
-
-def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
-    """Return a sampler for an export that shares no work with the window's caches."""
-    layer = clip.layer
-    is_sibling = sibling is not None and sibling.domain.cage is layer.domain.cage
-    sampler = PoseSampler(
-        layer.domain, anchor=layer.anchor, sibling=sibling if is_sibling else None
-    )
-    return Animation(clip, sampler=sampler)
 
 
 def cancel_export(session: Session) -> None:

@@ -25,7 +25,7 @@ def make_ghosts(session: Session, project: Project, drawing: GpuResources) -> tu
     """Return the onion skins of all layers that are visible then and look different."""
     if project.timeline.playhead.since is not None or project.layer_runtime.shown is None:
         return ()
-    preferences, now = session.settings.preferences, project.layer_runtime.shown.frame
+    preferences, now = session.settings.preferences, int(project.layer_runtime.shown.frame)
     ghosts = []
     sides = (
         (-1, preferences.ghosts_before, GHOST_BEFORE),

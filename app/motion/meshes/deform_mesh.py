@@ -1,12 +1,14 @@
 """A mesh that a pose deforms, and points located on the mesh."""
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 import numpy.typing as npt
 
-from app.document import Pose
-from app.motion.triangle_order import TriangleOrder
+from app.document import Layer, Pose
+from app.motion.meshes.triangle_order import TriangleOrder
 from engine.arrays import Booleans, Complexes, Floats, Integers
 from engine.domain import MeshedDomain
 from engine.domain.meshing.draw_order import copy_draw_order
@@ -21,6 +23,7 @@ FEWEST_TRIANGLES = 4_000
 # A layer has a coarse mesh only if its own is finer by this factor: everything prepared for a layer
 # is then prepared for both meshes.
 FINER = 2
+_KEPT = 2  # sets of located handles per mesh
 EDGE = 1e-6  # tolerance of barycentric weights for rounding
 
 
@@ -53,23 +56,33 @@ class MeshPoints:
         return angles
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class DeformMesh:
-    """A mesh of a domain, with the coordinates by which any pose deforms it."""
+    """A mesh of a domain, which any pose deforms."""
 
     domain: MeshedDomain  # with the displayed mesh, which may be coarser than the layer's own
     source: MeshedDomain  # the layer's own domain
-    # Complex64 (v, n): values of the basis functions of maps at the vertices. Single precision is
-    # enough for a screen.
-    coordinates: npt.NDArray[np.complex64]
-    order: TriangleOrder = field(init=False)  # drawing order of the mesh's triangles
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "order", TriangleOrder(self.domain.mesh))
+    @cached_property
+    def order(self) -> TriangleOrder:
+        """Drawing order of the mesh's triangles."""
+        return TriangleOrder(self.domain.mesh)
+
+    @cached_property
+    def coordinates(self) -> npt.NDArray[np.complex64]:
+        """Values of the basis functions of maps at the vertices, complex64 (v, n).
+
+        Single precision is enough for a screen.
+        """
+        return _span(self.domain).coordinates(self.domain.mesh.vertices).astype(np.complex64)
+
+    @cached_property
+    def _located(self) -> Callable[[tuple[complex, ...]], MeshPoints]:
+        return lru_cache(maxsize=_KEPT)(partial(_locate_at_rest, self.domain.mesh))
 
     @classmethod
     def fine(cls, source: MeshedDomain) -> "DeformMesh":
-        return cls(domain=source, source=source, coordinates=_coordinates(source))
+        return cls(domain=source, source=source)
 
     @classmethod
     def coarse(cls, source: MeshedDomain, *, among: int = 1) -> "DeformMesh":
@@ -82,31 +95,23 @@ class DeformMesh:
             return cls.fine(source)
         mesh = triangulate(source.outline, wanted, holes=source.loops[1:])
         coarse = replace(source, mesh=copy_draw_order(mesh, source.mesh))
-        return cls(domain=coarse, source=source, coordinates=_coordinates(coarse))
+        return cls(domain=coarse, source=source)
 
-    def locate(self, points: Complexes, positions: Complexes) -> "MeshPoints":
+    def prepared(self) -> "DeformMesh":
+        """Return the mesh, ready to be deformed without delay; on a worker thread."""
+        _ = self.coordinates
+        return self
+
+    def locate(self, points: Complexes, positions: Complexes) -> MeshPoints:
         """Locate points (p,) in the mesh with vertices at `positions` (v,).
 
         The positions may be undeformed, or of a pose.
         """
-        corners = positions[self.domain.mesh.triangles]
-        origin, side, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2]
-        other = other - origin
-        area = _cross(side, other)
-        found, weights = [], []
-        for point in points:
-            offset = point - origin
-            v, w = _cross(offset, other) / area, _cross(side, offset) / area
-            depth = np.minimum(np.minimum(v, w), 1.0 - v - w)
-            inside = np.flatnonzero(depth >= -EDGE)
-            # Of overlapping triangles, the last is drawn on top.
-            index = int(inside[-1]) if len(inside) else int(np.argmax(depth))
-            found.append(index)
-            weights.append((1.0 - v[index] - w[index], v[index], w[index]))
-        return MeshPoints(
-            vertices=self.domain.mesh.triangles[np.array(found, dtype=np.intp)],
-            weights=np.array(weights, dtype=np.float64).reshape(len(found), 3),
-        )
+        return _locate(self.domain.mesh.triangles, points, positions)
+
+    def locate_handles(self, layer: Layer) -> MeshPoints:
+        """Locate a layer's handles in the undeformed mesh."""
+        return self._located(tuple(handle.position for handle in layer.handles))
 
     def derivatives(self, positions: Complexes) -> tuple[Complexes, Complexes]:
         """Return f_z and f_z̄ of the drawn triangles at the vertices, each (v,)."""
@@ -122,6 +127,31 @@ class DeformMesh:
         shift = self.coordinates @ moved
         places: Complexes = self.domain.mesh.vertices + shift[:, 0] + shift[:, 1].conj()
         return places
+
+
+def _locate_at_rest(mesh: Mesh, places: tuple[complex, ...]) -> MeshPoints:
+    return _locate(mesh.triangles, np.array(places, dtype=np.complex128), mesh.vertices)
+
+
+def _locate(triangles: Integers, points: Complexes, positions: Complexes) -> MeshPoints:
+    corners = positions[triangles]
+    origin, side, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2]
+    other = other - origin
+    area = _cross(side, other)
+    found, weights = [], []
+    for point in points:
+        offset = point - origin
+        v, w = _cross(offset, other) / area, _cross(side, offset) / area
+        depth = np.minimum(np.minimum(v, w), 1.0 - v - w)
+        inside = np.flatnonzero(depth >= -EDGE)
+        # Of overlapping triangles, the last is drawn on top.
+        index = int(inside[-1]) if len(inside) else int(np.argmax(depth))
+        found.append(index)
+        weights.append((1.0 - v[index] - w[index], v[index], w[index]))
+    return MeshPoints(
+        vertices=triangles[np.array(found, dtype=np.intp)],
+        weights=np.array(weights, dtype=np.float64).reshape(len(found), 3),
+    )
 
 
 def _mean_derivatives(mesh: Mesh, positions: Complexes) -> tuple[Complexes, Complexes]:
@@ -149,10 +179,6 @@ def _gather(values: Complexes, mesh: Mesh) -> Complexes:
 def _cross(first: Complexes, second: Complexes) -> Floats:
     product: Floats = (first.conj() * second).imag
     return product
-
-
-def _coordinates(domain: MeshedDomain) -> npt.NDArray[np.complex64]:
-    return _span(domain).coordinates(domain.mesh.vertices).astype(np.complex64)
 
 
 def _span(domain: MeshedDomain) -> Span:
