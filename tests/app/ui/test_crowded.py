@@ -16,6 +16,7 @@ from app.editor.actions import editing
 from app.editor.actions.project_files import saving
 from app.editor.layering import layer_list
 from app.editor.parts.timeline import TimeRangeView
+from app.motion import evaluator
 
 MANY = 4_000
 CORNERS = 18_000  # more than those of the rest of the window, at most: three full lanes
