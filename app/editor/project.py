@@ -10,7 +10,6 @@ from app.document import (
     CAMERA,
     MARKER,
     SWITCH,
-    TRANSFORM,
     Baseline,
     Channel,
     Clip,
@@ -26,7 +25,6 @@ from app.document import (
     keys_in,
     pose_channel,
     track_in,
-    transform_at,
 )
 from app.editor.parts.export_state import ExportDestinations
 from app.editor.parts.layer_list import LayerListState
@@ -46,7 +44,6 @@ from app.editor.work.track_drag import TrackDrag
 from app.motion import (
     BoundingBox,
     Evaluator,
-    ParentTransforms,
     PoseSampler,
 )
 from app.render import View
@@ -228,11 +225,6 @@ class Project(Revised):
         return None if stale is self.layer_setup.unbuildable else stale
 
     @property
-    def current_parent_transforms(self) -> ParentTransforms | None:
-        """Joints of the present document; None without joints, or while they are unknown."""
-        return self.evaluator.current_transforms(self.document)
-
-    @property
     def evaluator(self) -> Evaluator:
         """The evaluator of displayed frames."""
         return Evaluator(
@@ -245,34 +237,8 @@ class Project(Revised):
         return self.placed_at(self.selection.active, frames) or [unknown for _ in frames]
 
     def placed_at(self, layer: int, frames: Sequence[int]) -> list[RigidMotion] | None:
-        """Return a layer's placements at some frames; None while they are unknown.
-
-        While the layer itself is posed, its earlier joints stay valid.
-        """
-        own, joints = self.document.layer(layer), self.current_parent_transforms
-        if not own.attachments:
-            return [transform_at(self.document, own, frame) for frame in frames]
-        if joints is None and (before := self.measured.parent_transforms.value) is not None:
-            joints = before if self._has_same_parents(before.document, own) else None
-        return None if joints is None else [joints.placement(layer, frame) for frame in frames]
-
-    def _has_same_parents(self, before: Document, layer: Layer) -> bool:
-        """Return whether a layer has the same parents as in an earlier document."""
-        was = {each.id: each for each in before.layers}
-        document, own = self.document, was.get(layer.id)
-        return (
-            own is not None
-            and (before.frames, before.loop) == (document.frames, document.loop)
-            and (own.attachments, own.anchor, own.domain, own.keys_of(TRANSFORM), own.cycles)
-            == (
-                layer.attachments,
-                layer.anchor,
-                layer.domain,
-                layer.keys_of(TRANSFORM),
-                layer.cycles,
-            )
-            and all(was.get(each.id) is each for each in document.all_ancestors(layer.id))
-        )
+        """Return a layer's placements at some frames; None while they are unknown."""
+        return self.evaluator.placements(self.document, layer, frames)
 
     def update_comparisons(self, method: Variant | Baseline | None) -> None:
         """Compare each layer with a method, or with none."""

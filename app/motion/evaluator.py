@@ -4,7 +4,7 @@ Stages: in-betweens with auto-pins, corrections by tracks and springs, transform
 visible layers, their order and the camera. Each stage is cached by what determines it.
 """
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Literal, Self, TypeVar
@@ -33,7 +33,11 @@ from app.motion.inbetweens.spring_offsets import ParentMotion
 from app.motion.layer_frame import LayerFrame, evaluate_layer
 from app.motion.meshes.deform_mesh import DeformMesh
 from app.motion.parenting.chain import compose_chain, parent_links
-from app.motion.parenting.parent_transforms import ParentTransforms, parenting_key
+from app.motion.parenting.parent_transforms import (
+    ParentTransforms,
+    have_same_parents,
+    parenting_key,
+)
 from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 # "exact" computes what is missing; "display" returns at once, if need be with placeholders.
@@ -239,6 +243,23 @@ class Evaluator:
         known, key = self.transforms, parenting_key(document)
         is_current = known is not None and bool(key) and parenting_key(known.document) == key
         return known if is_current else None
+
+    def placements(
+        self, document: Document, layer: int, frames: Sequence[int]
+    ) -> list[RigidMotion] | None:
+        """Return a layer's placements at some frames; None while they are unknown.
+
+        While the layer itself is posed, its earlier transforms stay valid.
+        """
+        own, transforms = document.layer(layer), self.current_transforms(document)
+        if not own.attachments:
+            return [transform_at(document, own, frame) for frame in frames]
+        if transforms is None and self.transforms is not None:
+            is_same = have_same_parents(self.transforms.document, document, own)
+            transforms = self.transforms if is_same else None
+        if transforms is None:
+            return None
+        return [transforms.placement(layer, frame) for frame in frames]
 
     def placed(
         self, document: Document, shown: Mapping[int, LayerFrame], poses: Mapping[int, Pose]

@@ -20,7 +20,7 @@ class Measurements(Revised):
     comparison_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     # Motion paths of the active layer's handles, computed while they are shown.
     paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
-    # Of attached layers; `Project.current_parent_transforms` has those of the present document.
+    # Of attached layers; `Evaluator.current_transforms` has those of the present document.
     parent_transforms: Derived[tuple[object, ...], ParentTransforms | None] = field(
         default_factory=lambda: Derived(None)
     )

@@ -255,6 +255,22 @@ def parenting_key(document: Document) -> tuple[object, ...]:
     return tuple(clip_of(document, each.id) for each in dict.fromkeys(involved))
 
 
+def have_same_parents(before: Document, document: Document, layer: Layer) -> bool:
+    """Return whether a layer of a document has the same parents as in an earlier document."""
+    own = next((each for each in before.layers if each.id == layer.id), None)
+    return (
+        own is not None
+        and (before.frames, before.loop) == (document.frames, document.loop)
+        and _of_parents(own) == _of_parents(layer)
+        and all(each in before.layers for each in document.all_ancestors(layer.id))
+    )
+
+
+def _of_parents(layer: Layer) -> tuple[object, ...]:
+    moves = layer.keys_of(TRANSFORM)
+    return layer.attachments, layer.anchor, layer.domain, moves, layer.cycles
+
+
 def _points(document: Document) -> dict[int, list[complex]]:
     """Return the joint points of each layer."""
     points: dict[int, list[complex]] = {layer.id: [] for layer in document.layers}

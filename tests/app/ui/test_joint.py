@@ -300,7 +300,7 @@ def test_child_of_a_posed_parent_is_placed_with_the_correction(swung):
     # The pose alone is elsewhere than the parent, which is drawn with a correction.
     poses = {body: swung.document.layer(body).keys[0].pose}
     shown[body] = replace(shown[body], correction=object())
-    exact = Evaluator(layers={}, transforms=swung.current_parent_transforms)
+    exact = Evaluator(layers={}, transforms=swung.evaluator.transforms)
     placed = exact.placed(swung.document, shown, poses)
     drawn = Evaluator(layers={}).placed(swung.document, shown, poses)
     assert placed[arm].placement == drawn[arm].placement
@@ -489,7 +489,7 @@ def test_motion_path_stays_at_its_parent_during_a_drag(window, swung):
     layer = swung.document.layer(swung.selection.active)
     other = replace(layer, handles=(replace(handle, weight=2.0),))
     swung.history.do(Command("Weigh", lambda document: document.with_layer(other)), gesture=None)
-    assert swung.current_parent_transforms is None
+    assert swung.evaluator.current_transforms(swung.document) is None
     np.testing.assert_allclose(ways(window, swung), [way], rtol=0, atol=1e-9)
 
 
