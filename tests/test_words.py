@@ -24,7 +24,6 @@ READ = {
 REPLACED_LONG = {
     "app/document/layer.py",
     "app/document/model.py",
-    "app/editor/actions/frame_update.py",
     "app/motion/inbetween_cache.py",
     "app/motion/inbetweens/pose_sampler.py",
     "app/solving/drag_solver.py",

@@ -133,6 +133,11 @@ class Project(Revised):
         return clip_of(self.document, self.selection.active)
 
     @property
+    def clips(self) -> list[tuple[Clip, LayerRuntime]]:
+        """All layers in the time of their scene, with their runtimes."""
+        return [(each.clip(self.document), each) for each in self.runtimes.layers.values()]
+
+    @property
     def layer_runtime(self) -> LayerRuntime:
         """The active layer's runtime."""
         return self.runtimes.layers[self.selection.active]
@@ -162,11 +167,7 @@ class Project(Revised):
             held[runtime] = runtime.releasable_bytes(clip)
 
     def _unedited(self) -> list[tuple[Clip, LayerRuntime]]:
-        return [
-            (clip_of(self.document, layer), runtime)
-            for layer, runtime in self.runtimes.layers.items()
-            if layer != self.selection.active
-        ]
+        return [each for each in self.clips if each[1] is not self.layer_runtime]
 
     @property
     def unkeyed_pose(self) -> Pose | None:

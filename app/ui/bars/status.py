@@ -7,7 +7,7 @@ from imgui_bundle import ImColor, ImVec2, imgui, imspinner
 
 from app.document import DistortionRange, measure_target_errors, misses_target, relax_limits
 from app.editor import Action, JobKind, Project, Session, do, pending_changes
-from app.editor.actions import frame_update
+from app.editor.actions import stage_jobs
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.project_files import exporting
 from app.errors import display_name
@@ -178,7 +178,7 @@ def _cancel(session: Session, look: Look, slow: Sequence[JobKind]) -> list[Actio
     imgui.same_line(0, 0.8 * look.em)
     is_pressed = imgui.small_button(_("Cancel"))
     draw_tooltip(_("Cancel: {job}").format(job=endless[0].label))
-    return [do(frame_update.give_up, endless[0])] if is_pressed else []
+    return [do(stage_jobs.give_up, endless[0])] if is_pressed else []
 
 
 def _warn(session: Session, look: Look, text: str, remedy: WarningAction) -> list[Action]:

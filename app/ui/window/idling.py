@@ -3,7 +3,7 @@
 from imgui_bundle import hello_imgui
 
 from app.editor import FileDialog, Session
-from app.editor.actions import frame_update
+from app.editor.actions import stage_jobs
 
 # Input and running jobs wake the window at once.
 IDLE_FPS = 0.2
@@ -54,7 +54,7 @@ def _awaits_in_between(session: Session) -> bool:
         return False
     if session.notices.toasts or session.dialogs.current:
         return False
-    if {frame_update.GLIMPSING, frame_update.SKETCHING}.isdisjoint(session.jobs.kinds):
+    if {stage_jobs.GLIMPSING, stage_jobs.SKETCHING}.isdisjoint(session.jobs.kinds):
         return False
     shows = [runtime.shown for runtime in project.runtimes.layers.values()]
     return any(shown is not None and not shown.is_current for shown in shows)

@@ -20,7 +20,7 @@ from app.document.queries.channel_values.channel_keys import pose_channel
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.editor.actions import editing, viewing
-from app.editor.actions.frame_update import STREAMING, due_jobs
+from app.editor.actions.stage_jobs import STREAMING, due_jobs
 from app.editor.parts.settings import SessionSettings
 from app.editor.session import Session
 from app.editor.work.drag_session import DragSession

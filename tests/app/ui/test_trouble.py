@@ -10,7 +10,7 @@ import pytest
 from harness import Harness
 
 from app.document.keyframe import Target
-from app.editor.actions import frame_update
+from app.editor.actions import stage_jobs
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.posing.pose_solver import POSING
@@ -442,7 +442,7 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
     window.clock.now += saving.PATIENCE
     window.until(lambda: project.file.path is not None)
     assert (tmp_path / "a.lissom").exists()
-    window.act(frame_update.give_up, POSING)
+    window.act(stage_jobs.give_up, POSING)
     end.set()
     window.settle()
     assert any(CANCELLED in text for text in texts(window))

@@ -15,7 +15,14 @@ from app.document.commands import handle_commands
 from app.document.keyframe import Target
 from app.document.queries.target_error import HELD_BY_LIMITS, measure_target_errors
 from app.document.settings import FrameRange, Meshing
-from app.editor.actions import dialog_actions, editing, frame_update, playback, viewing
+from app.editor.actions import (
+    dialog_actions,
+    editing,
+    measuring_jobs,
+    playback,
+    stage_jobs,
+    viewing,
+)
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import INSERTING, insert_key
@@ -398,10 +405,10 @@ def test_bound_that_bounds_nothing_is_refused_in_words(window, loose):
 
 
 INBETWEENS = (
-    frame_update.GLIMPSING,
-    frame_update.SKETCHING,
-    frame_update.REFINING,
-    frame_update.STREAMING,
+    stage_jobs.GLIMPSING,
+    stage_jobs.SKETCHING,
+    stage_jobs.REFINING,
+    stage_jobs.STREAMING,
 )
 
 
@@ -450,11 +457,11 @@ FAILURES = {
         lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Measuring": (
-        "app.editor.actions.frame_update.measure_curves",
+        "app.editor.actions.measuring_jobs.measure_curves",
         lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Measuring the motion": (
-        "app.editor.actions.frame_update.measure_extent",
+        "app.editor.actions.measuring_jobs.measure_extent",
         lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Smooth playback": (
@@ -550,10 +557,10 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
 
 
 WAITING = {
-    frame_update.SKETCHING: lambda session: editing.edit_layer(
+    stage_jobs.SKETCHING: lambda session: editing.edit_layer(
         session, shape_commands.set_variant, "nu"
     ),
-    frame_update.SPANNING: lambda session: (
+    measuring_jobs.SPANNING: lambda session: (
         setattr(session.project.measured, "extent", Derived(None)),
         export_settings.preview_export_frame(session, BoundingBox(0j, 1 + 1j)),
         run_update_steps(session),
