@@ -14,7 +14,7 @@ from app.document.queries.layers.visibility import is_visible
 from app.document.queries.target_error import DistortionRange
 from app.document.queries.timeline import clip_of, export_frame_range
 from app.motion import Animation, ParentTransforms, TriangleOrder
-from app.motion.inbetween_cache import InbetweenCache
+from app.motion.caches.inbetween_cache import InbetweenCache
 from app.motion.meshes.deform_mesh import DeformMesh
 from app.reports.certification import Verdict, certify_clip
 from app.solving.script.pose_script import load_pose_script

@@ -24,7 +24,7 @@ READ = {
 REPLACED_LONG = {
     "app/document/layer.py",
     "app/document/model.py",
-    "app/motion/inbetween_cache.py",
+    "app/motion/caches/inbetween_cache.py",
     "app/motion/inbetweens/pose_sampler.py",
     "app/solving/drag_solver.py",
 }

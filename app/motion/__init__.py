@@ -5,14 +5,24 @@ Out: positions of the vertices, and their bounding boxes.
 Imports: `app.document`, `app.rigging`, `engine`.
 """
 
-from app.motion.corrected_frames import (
+from app.motion.caches.corrected_frames import (
     CorrectedFrames as CorrectedFrames,
     CorrectionUpdate as CorrectionUpdate,
     reuse_corrections as reuse_corrections,
 )
+from app.motion.caches.inbetween_cache import (
+    InbetweenCache as InbetweenCache,
+    InbetweenPart as InbetweenPart,
+)
+from app.motion.caches.inbetween_jobs import (
+    AnyInbetweens as AnyInbetweens,
+    CachedSegment as CachedSegment,
+    CacheUpdate as CacheUpdate,
+    SeriesBuild as SeriesBuild,
+)
+from app.motion.caches.segment_memory import MemoryBudget as MemoryBudget
 from app.motion.evaluator import (
     Evaluator as Evaluator,
-    LayerStages as LayerStages,
     SceneFrame as SceneFrame,
 )
 from app.motion.extents.extent import (
@@ -20,16 +30,6 @@ from app.motion.extents.extent import (
     bounding_box as bounding_box,
     extent_key as extent_key,
     measure_extent as measure_extent,
-)
-from app.motion.inbetween_cache import (
-    InbetweenCache as InbetweenCache,
-    InbetweenPart as InbetweenPart,
-)
-from app.motion.inbetween_jobs import (
-    AnyInbetweens as AnyInbetweens,
-    CachedSegment as CachedSegment,
-    CacheUpdate as CacheUpdate,
-    SeriesBuild as SeriesBuild,
 )
 from app.motion.inbetweens.animation import Animation as Animation
 from app.motion.inbetweens.frame_corrector import (
@@ -43,6 +43,7 @@ from app.motion.layer_frame import (
     LayerFrame as LayerFrame,
     evaluate_layer as evaluate_layer,
 )
+from app.motion.layer_stages import LayerStages as LayerStages
 from app.motion.meshes.deform_mesh import DeformMesh as DeformMesh, MeshPoints as MeshPoints
 from app.motion.meshes.triangle_order import TriangleOrder as TriangleOrder
 from app.motion.meshes.vertices import (

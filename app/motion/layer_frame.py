@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.document import Clip, Pose, keyed_pose_at, segment_time_at
-from app.motion.corrected_frames import CorrectedFrames
-from app.motion.inbetween_cache import InbetweenCache
-from app.motion.inbetween_jobs import SingleFrame
+from app.motion.caches.corrected_frames import CorrectedFrames
+from app.motion.caches.inbetween_cache import InbetweenCache
+from app.motion.caches.inbetween_jobs import SingleFrame
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.motion.meshes.deform_mesh import DeformMesh, MeshPoints
 from app.motion.meshes.vertices import StreamedVertices, Vertices

@@ -11,7 +11,7 @@ from shapes import regular_polygon
 from app.document.keyframe import Keyframe
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
-from app.motion.inbetween_cache import InbetweenCache
+from app.motion.caches.inbetween_cache import InbetweenCache
 from app.motion.meshes.deform_mesh import DeformMesh
 from engine.maps import Bounds
 

@@ -8,7 +8,7 @@ from projects import project_of
 from app.document import Document
 from app.editor import Jobs, Session, pending_changes
 from app.editor.actions import playback
-from app.editor.actions.frame_update import STEPS
+from app.editor.actions.updates.frame_update import STEPS
 from app.editor.parts.settings import SessionSettings
 from engine.arrays import Bytes
 

@@ -7,7 +7,14 @@ from app.cut_out import CutOut
 from app.document import Baseline, Clip, Document, History, Layer, PictureFile, Variant, clip_of
 from app.editor.work.derived import Derived
 from app.editor.work.revised import Revised
-from app.motion import DeformMesh, InbetweenCache, LayerStages, SceneFrame, needs_correction
+from app.motion import (
+    DeformMesh,
+    InbetweenCache,
+    LayerStages,
+    MemoryBudget,
+    SceneFrame,
+    needs_correction,
+)
 from app.solving import Rig
 from app.storage import CutOutResult, Picture, cut_picture, decode_picture
 from engine.arrays import Bytes
@@ -88,6 +95,8 @@ class LayerRuntimes(Revised):
     """The runtimes of a document's layers, as many as it has layers."""
 
     layers: dict[int, LayerRuntime]  # by layer id
+    # Of the in-betweens of all layers.
+    budget: MemoryBudget = field(default_factory=MemoryBudget)
     # The displayed frame, and the same frame by the compared method.
     displayed: SceneFrame | None = None
     compared: SceneFrame | None = None
@@ -105,6 +114,10 @@ class LayerRuntimes(Revised):
         self.displayed = self.displayed if displayed == self.displayed else displayed
         self.compared = self.compared if compared == self.compared else compared
 
+    def __post_init__(self) -> None:
+        for runtime in self.layers.values():
+            runtime.store.memory.join(self.budget)
+
     def keep_picture(self, file: PictureFile, picture: Picture) -> None:
         """Keep a decoded picture for a layer that will use it."""
         self.pictures[file] = picture
@@ -112,6 +125,7 @@ class LayerRuntimes(Revised):
     def put(self, layer: int, runtime: LayerRuntime) -> None:
         """Use a runtime that was prepared for a new layer."""
         self.layers[layer] = runtime
+        runtime.store.memory.join(self.budget)
 
     def match(self, document: Document, history: History) -> None:
         """Make missing runtimes of layers, and delete those of layers that are gone."""
@@ -128,8 +142,5 @@ class LayerRuntimes(Revised):
                 continue
             if layer.picture not in self.pictures:
                 self.pictures[layer.picture] = decode_picture(layer.picture.data, layer.name)
-            self.layers[layer.id] = LayerRuntime.of(
-                clip_of(document, layer.id),
-                self.pictures[layer.picture],
-                among=len(document.layers),
-            )
+            clip, picture = clip_of(document, layer.id), self.pictures[layer.picture]
+            self.put(layer.id, LayerRuntime.of(clip, picture, among=len(document.layers)))

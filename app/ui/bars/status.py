@@ -7,9 +7,9 @@ from imgui_bundle import ImColor, ImVec2, imgui, imspinner
 
 from app.document import DistortionRange, measure_target_errors, misses_target, relax_limits
 from app.editor import Action, JobKind, Project, Session, do, pending_changes
-from app.editor.actions import stage_jobs
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.project_files import exporting
+from app.editor.actions.updates import stage_jobs
 from app.errors import display_name
 from app.texts import _, ngettext
 from app.ui.style.theme import Look

@@ -3,7 +3,7 @@
 from imgui_bundle import hello_imgui
 
 from app.editor import FileDialog, Session
-from app.editor.actions import stage_jobs
+from app.editor.actions.updates import stage_jobs
 
 # Input and running jobs wake the window at once.
 IDLE_FPS = 0.2

@@ -15,10 +15,11 @@ from app.editor import (
     error_reports,
     pending_changes,
 )
-from app.editor.actions import frame_update, playback, tutorials
+from app.editor.actions import playback, tutorials
 from app.editor.actions.dialog_actions import close_dialog
 from app.editor.actions.posing.pose_solver import stop_finishing_pose
 from app.editor.actions.project_files import autosaving, saving
+from app.editor.actions.updates import frame_update
 from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail

@@ -7,7 +7,7 @@ from documents import disc_document
 from sessions import session_of
 
 from app.document import OPACITY, Channel, Document, pose_channel
-from app.editor.actions.frame_update import session_revision
+from app.editor.actions.updates.frame_update import session_revision
 from app.editor.parts.dialogs import DialogState, ProblemReport, RecoveryDialog, ShortcutSheet
 from app.editor.parts.export_state import ExportDestinations
 from app.editor.parts.notices import Notices

@@ -20,7 +20,7 @@ from app.document.queries.channel_values.channel_keys import pose_channel
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.editor.actions import editing, viewing
-from app.editor.actions.stage_jobs import STREAMING, due_jobs
+from app.editor.actions.updates.stage_jobs import STREAMING, due_jobs
 from app.editor.parts.settings import SessionSettings
 from app.editor.session import Session
 from app.editor.work.drag_session import DragSession
@@ -30,11 +30,12 @@ from app.motion import (
     CacheUpdate,
     DeformMesh,
     InbetweenCache,
+    MemoryBudget,
     StreamedVertices,
     VertexArray,
     evaluate_layer,
 )
-from app.motion.inbetween_jobs import SeriesBuild, segment_key
+from app.motion.caches.inbetween_jobs import SeriesBuild, segment_key
 from engine import streaming
 from engine.variant import Variant
 
@@ -103,7 +104,7 @@ def stream(store, clip, frame, *, heat=False):
     while build := store.next_build(clip, frame, heat=heat):
         order.append((numbers[build.segment_key], build.distortions))
         store.add_build(finished(build))
-        assert store.nbytes <= store.budget
+        assert store.nbytes <= store.memory.budget.limit
         assert len(order) < 20
     return order
 
@@ -269,35 +270,48 @@ def test_what_nothing_present_needs_makes_room_and_the_oldest_first(clip, prepar
     # Room for the present one, and not quite for both of the others.
     own = sum(sum(prepared.segment(clip, i).sizes) for i in range(3))
     spare = size - own
-    prepared.spare = spare - 1
+    prepared.memory.budget.spare = spare - 1
     prepared.set_needed_clips([clip], [others[0]], 0)
     prepared.set_needed_clips([clip], [], 0)
     assert prepared.has(clip)
     assert not prepared.has(others[1]), "wanted before the other one"
     assert prepared.has(others[0])
-    prepared.budget = own
+    prepared.memory.budget.limit = own
     prepared.set_needed_clips([clip], [others[0]], 0)
     assert prepared.has(clip)
     assert not prepared.has(others[0]), "to which undo leads, if there is room"
     assert prepared.nbytes <= own
 
 
+def test_caches_share_a_budget_and_what_nobody_needs_goes_first(clip, prepared):
+    other = InbetweenCache(mesh=prepared.mesh, budget=prepared.memory.budget)
+    prepare(other, clip)
+    prepared.set_needed_clips([clip], [], 0)
+    budget = prepared.memory.budget
+    assert budget.nbytes == prepared.nbytes + other.nbytes
+    budget.limit = prepared.nbytes
+    assert not prepared.has_room()
+    other.add(CacheUpdate(sampler=None, segments={}))
+    assert prepared.has(clip)
+    assert not other.has(clip)
+
+
 def test_memory_is_bounded_and_the_farthest_series_makes_room(clip, prepared, monkeypatch):
-    monkeypatch.setattr("app.motion.inbetween_cache.EXPECTED", 1)
+    monkeypatch.setattr("app.motion.caches.inbetween_cache.EXPECTED", 1)
     prepared.set_needed_clips([clip], [], 0)
     base = prepared.nbytes
     stream(prepared, clip, 0)
     sizes = [prepared.segment(clip, i).series.nbytes for i in range(3)]
-    prepared.budget = base + sizes[1] + max(sizes[0], sizes[2])
+    prepared.memory.budget.limit = base + sizes[1] + max(sizes[0], sizes[2])
     prepared.add(CacheUpdate(sampler=None, segments={}))
     assert streamed(prepared, clip) == [True, True, False]
     assert stream(prepared, clip, 0) == []
-    assert prepared.nbytes <= prepared.budget
+    assert prepared.nbytes <= prepared.memory.budget.limit
     # The playhead moves on to the last interval.
     stream(prepared, clip, 25)
     assert streamed(prepared, clip) == [False, True, True]
     assert prepared.has(clip)
-    assert prepared.nbytes <= prepared.budget
+    assert prepared.nbytes <= prepared.memory.budget.limit
 
 
 def test_at_rest_series_alone_show_all_of_what_nobody_edits(clip, prepared):
@@ -344,7 +358,7 @@ def test_what_no_series_has_all_of_stays_prepared_at_rest(clip, prepared):
 
 @pytest.mark.parametrize("frame", [0, 25])
 def test_what_did_not_fit_is_not_built_over_and_over(clip, found, monkeypatch, frame):
-    monkeypatch.setattr("app.motion.inbetween_cache.EXPECTED", 1)
+    monkeypatch.setattr("app.motion.caches.inbetween_cache.EXPECTED", 1)
     mesh, intervals = found
     everything = InbetweenCache(mesh=mesh)
     everything.add(intervals)
@@ -352,7 +366,9 @@ def test_what_did_not_fit_is_not_built_over_and_over(clip, found, monkeypatch, f
     stream(everything, clip, 0)
     sizes = [everything.segment(clip, i).series.nbytes for i in range(3)]
     # There is room for the nearest one, and not quite for the next.
-    store = InbetweenCache(mesh=mesh, budget=base + sizes[1] + sizes[2 if frame else 0] - 1)
+    store = InbetweenCache(
+        mesh=mesh, budget=MemoryBudget(base + sizes[1] + sizes[2 if frame else 0] - 1)
+    )
     store.set_needed_clips([clip], [], frame)
     store.add(intervals)
     order = stream(store, clip, frame)
@@ -366,11 +382,13 @@ def test_full_detail_is_prepared_as_far_as_there_is_room(clip, found):
     store.set_needed_clips([clip], [], 0)
     prepare(store, clip, 0)
     one = store.nbytes
-    store.budget = 2 * one
+    store.memory.budget.limit = 2 * one
     assert store.has_room()
-    store.budget = 2 * one - 1
+    store.memory.budget.limit = 2 * one - 1
     assert not store.has_room()
-    assert InbetweenCache(mesh=mesh, budget=1).has_room(), "nothing is known of their size"
+    assert InbetweenCache(mesh=mesh, budget=MemoryBudget(1)).has_room(), (
+        "nothing is known of their size"
+    )
 
 
 # Series.
@@ -494,7 +512,7 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
         raise ZeroDivisionError("a bug")
 
     with monkeypatch.context() as patch:
-        patch.setattr("app.motion.inbetween_jobs.build_series", broken)
+        patch.setattr("app.motion.caches.inbetween_jobs.build_series", broken)
         settle()
         settle()
     store = project.layer_runtime.store
@@ -512,7 +530,9 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
 
 
 def test_the_worker_takes_few_steps_at_once(clip, prepared, monkeypatch):
-    monkeypatch.setattr("app.motion.inbetween_jobs.BATCH", 3 * len(clip.layer.domain.mesh.vertices))
+    monkeypatch.setattr(
+        "app.motion.caches.inbetween_jobs.BATCH", 3 * len(clip.layer.domain.mesh.vertices)
+    )
     build = prepared.next_build(clip, 0, heat=False)
     batches = 0
     while build.series is None:

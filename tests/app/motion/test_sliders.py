@@ -23,7 +23,7 @@ from app.document import (
     segment_keys,
 )
 from app.motion import Animation, DeformMesh, InbetweenCache, evaluate_layer, trace_paths
-from app.motion.corrected_frames import CorrectedFrames
+from app.motion.caches.corrected_frames import CorrectedFrames
 from app.motion.inbetweens.frame_corrector import have_same_base_frames
 from app.reports import Verdict, certify_clip
 from app.solving import Rig, fit_shown_pose

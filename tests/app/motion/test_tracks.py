@@ -40,7 +40,7 @@ from app.motion import (
     reuse_corrections,
     trace_paths,
 )
-from app.motion.corrected_frames import CorrectedFrames
+from app.motion.caches.corrected_frames import CorrectedFrames
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.spring_offsets import MAX_SPRING_OFFSET, PIECE, SpringOffsets
 from app.reports import Verdict, certify_clip, corrected_frames

@@ -52,7 +52,7 @@ from app.document.commands.layers import layer_commands
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.editor.action import Action
-from app.editor.actions import editing, frame_update, playback, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import (
     cut_out_editing,
     handle_editing,
@@ -72,6 +72,7 @@ from app.editor.actions.posing.pose_drag import (
     set_targets,
 )
 from app.editor.actions.timing import channel_keys, keys, springs, timeline_drag, tracks
+from app.editor.actions.updates import frame_update
 from app.editor.layering.layer_list import (
     duplicate_layer,
     rename_layer,

@@ -31,7 +31,6 @@ from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import release_drag, set_targets
 from app.editor.actions.timing import tracks
-from app.editor.actions.tracking.correction_jobs import COMPLAINT
 from app.editor.actions.tracking.recording import (
     drag_recorded_handle,
     smooth_recording,
@@ -39,6 +38,7 @@ from app.editor.actions.tracking.recording import (
     stop_recording,
 )
 from app.editor.actions.tracking.track_space import track_target
+from app.editor.actions.updates.correction_jobs import COMPLAINT
 from app.motion import Animation
 from app.ui.bars.status import describe_pose_limit
 from app.ui.viewport.marks import find_off_target
@@ -624,7 +624,7 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
     def broken(*_):
         raise EngineError("no way")
 
-    monkeypatch.setattr("app.motion.corrected_frames._find", broken)
+    monkeypatch.setattr("app.motion.caches.corrected_frames._find", broken)
     keyed.selection.select_channel(None)
     playback.scrub(window.session, LAST)
     place = complex(keyed.layer.key(LAST).pose.targets[END].position)

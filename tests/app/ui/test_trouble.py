@@ -10,11 +10,11 @@ import pytest
 from harness import Harness
 
 from app.document.keyframe import Target
-from app.editor.actions import stage_jobs
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.posing.pose_solver import POSING
 from app.editor.actions.project_files import autosaving, exporting, files, recovery, saving
+from app.editor.actions.updates import stage_jobs
 from app.editor.parts.dialogs import FileDialog, Question, RecoveryDialog
 from app.editor.work.jobs import Job, JobKind
 from app.errors import CANCELLED

@@ -453,19 +453,19 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
 
 FAILURES = {
     "In-betweens": (
-        "app.motion.inbetween_cache.compute_segments",
+        "app.motion.caches.inbetween_cache.compute_segments",
         lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Measuring": (
-        "app.editor.actions.measuring_jobs.measure_curves",
+        "app.editor.actions.updates.measuring_jobs.measure_curves",
         lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Measuring the motion": (
-        "app.editor.actions.measuring_jobs.measure_extent",
+        "app.editor.actions.updates.measuring_jobs.measure_extent",
         lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Smooth playback": (
-        "app.motion.inbetween_jobs.build_series",
+        "app.motion.caches.inbetween_jobs.build_series",
         lambda session: editing.edit_layer(session, shape_commands.set_variant, "nu"),
     ),
     "Solving the keys": (
@@ -545,7 +545,7 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
             ended.set()
 
     monkeypatch.setattr(jobs, "_clock", window.clock)
-    monkeypatch.setattr("app.motion.inbetween_cache.compute_segments", endless)
+    monkeypatch.setattr("app.motion.caches.inbetween_cache.compute_segments", endless)
     window.act(editing.edit_layer, shape_commands.set_variant, "nu")
     window.until(lambda: any(jobs.share_of(kind) == 0.4 for kind in jobs.kinds))
     window.clock.now += SLOW

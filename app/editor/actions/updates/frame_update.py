@@ -9,8 +9,8 @@ from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_solver import update_drag
 from app.editor.actions.posing.reach_limit import show_stopped_drag
-from app.editor.actions.stage_jobs import due_jobs, is_worth_preparing
 from app.editor.actions.tracking.recording import update_track_drags
+from app.editor.actions.updates.stage_jobs import due_jobs, is_worth_preparing
 from app.editor.parts.timeline import measure_key_errors
 from app.editor.project import Project
 from app.editor.session import Session, with_project

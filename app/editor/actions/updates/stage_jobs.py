@@ -6,18 +6,18 @@ from typing import TypeVar
 
 from app.document import Clip, keyed_pose_at, segment_time_at
 from app.editor.actions import playback
-from app.editor.actions.measuring_jobs import (
+from app.editor.actions.posing.pose_commit import POSING
+from app.editor.actions.updates.correction_jobs import (
+    correction_jobs_for_shown_frame,
+    next_correction_jobs,
+)
+from app.editor.actions.updates.measuring_jobs import (
     asks_extent,
     cut_out_jobs,
     distortion_jobs,
     extent_jobs,
     make_job,
     motion_path_jobs,
-)
-from app.editor.actions.posing.pose_commit import POSING
-from app.editor.actions.tracking.correction_jobs import (
-    correction_jobs_for_shown_frame,
-    next_correction_jobs,
 )
 from app.editor.project import Project
 from app.editor.session import Session
@@ -157,7 +157,8 @@ def _prepare(
         make = DeformMesh.fine if is_fine else partial(DeformMesh.coarse, among=among)
 
         def begin(mesh: DeformMesh) -> None:
-            setattr(runtime, "fine" if is_fine else "store", InbetweenCache(mesh=mesh))
+            store = InbetweenCache(mesh=mesh, budget=project.runtimes.budget)
+            setattr(runtime, "fine" if is_fine else "store", store)
 
         work = partial(_prepared, make, domain)
         return _interval_job(session, kind, runtime, clip, work=work, done=begin)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 from functools import partial
 from itertools import chain
 from typing import Literal
@@ -18,7 +18,7 @@ from app.document import (
     segment_keys,
     segment_time_at,
 )
-from app.motion.inbetween_jobs import (
+from app.motion.caches.inbetween_jobs import (
     AnyInbetweens,
     CachedSegment,
     CacheUpdate,
@@ -27,6 +27,7 @@ from app.motion.inbetween_jobs import (
     compute_frame,
     compute_segments,
 )
+from app.motion.caches.segment_memory import MemoryBudget, SegmentMemory, by_nearness
 from app.motion.inbetweens.frame_corrector import needs_correction
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
@@ -37,7 +38,6 @@ from app.motion.meshes.vertices import StreamedVertices, VertexArray, Vertices
 from engine.arrays import Complexes
 from engine.interpolation import Inbetweens, InteriorKnot
 
-BUDGET = 2**30  # bytes per cache
 EXPECTED = 100  # assumed bytes per vertex of a series before the first is built
 # Parts of a clip that a job computes.
 InbetweenPart = Literal["frame", "in-betweens", "fine", "series", "correction"]
@@ -50,41 +50,33 @@ class InbetweenCache:
     The content (`SegmentKey`) identifies a segment. Undo, copied keys and a variant tried again
     thus find earlier results. A segment has nothing, one frame, prepared in-betweens, or a series.
     Workers get frozen input; their results are taken whenever they arrive.
-
-    Beyond the budget, segments that no clip needs are dropped first, the least recently used first.
-    Then follow segments for undo and redo. Then follow series, the farthest from the playhead
-    first. Prepared in-betweens of present clips stay.
     """
 
     mesh: DeformMesh
-    budget: int = BUDGET  # in bytes
-    spare: int = BUDGET // 64  # bytes that segments which no present clip needs may take
+    budget: InitVar[MemoryBudget | None] = None  # by default one of its own
+    memory: SegmentMemory = field(init=False)
     sampler: PoseSampler | None = None  # of the workers; None until a key or a track moves
     # Whether poses are sampled in double precision, which takes longer.
     samples_poses: bool = False
     whole: Clip | None = None  # the newest clip of the document with complete in-betweens
     build: SeriesBuild | None = None  # an unfinished series while no worker builds it
-    # In the order of last use, with sizes in bytes, and the largest sizes so far.
-    _known: dict[SegmentKey, CachedSegment] = field(init=False, default_factory=dict)
-    _sizes: dict[SegmentKey, tuple[int, int, int]] = field(init=False, default_factory=dict)
-    _largest: list[int] = field(init=False, default_factory=lambda: [0, 0, 0])
-    _present: dict[Clip, tuple[SegmentKey, ...]] = field(init=False, default_factory=dict)
-    _nearby: dict[Clip, tuple[SegmentKey, ...]] = field(init=False, default_factory=dict)
     _failures: set[tuple[InbetweenPart, tuple[SegmentKey, ...]]] = field(
         init=False, default_factory=set
     )
-    _frame: float = field(init=False, default=0)
     # Displacement of the vertices by the last requested correction.
     _moved: tuple[SecondaryCorrection, Complexes] | None = field(init=False, default=None)
 
+    def __post_init__(self, budget: MemoryBudget | None) -> None:
+        self.memory = SegmentMemory(budget=budget or MemoryBudget())
+
     def segment(self, clip: Clip, number: int) -> CachedSegment | None:
-        return self._known.get(segment_key(clip, number))
+        return self.memory.find(segment_key(clip, number))
 
     def prepared(self, clip: Clip) -> tuple[AnyInbetweens, ...] | None:
         """Return the prepared in-betweens of all segments; None if one is missing."""
         if clip.layer.domain is not self.mesh.source:
             return None
-        known = [self._known.get(pair) for pair in self._segment_keys(clip)]
+        known = [self.memory.find(key) for key in self.memory.keys_of(clip)]
         every = [each.inbetweens for each in known if each is not None and each.inbetweens]
         return tuple(every) if len(every) == len(known) else None
 
@@ -94,7 +86,7 @@ class InbetweenCache:
             return False
         if self.lacks_sampler(clip):
             return False
-        known = (self._known.get(pair) for pair in self._segment_keys(clip))
+        known = map(self.memory.find, self.memory.keys_of(clip))
         return all(each is not None and _shows(each, clip) for each in known)
 
     def lacks_sampler(self, clip: Clip) -> bool:
@@ -233,12 +225,12 @@ class InbetweenCache:
     @property
     def nbytes(self) -> int:
         """Bytes of all cached segments."""
-        return sum(map(sum, self._sizes.values()))
+        return self.memory.nbytes
 
     def snapshot(self) -> "InbetweenCache":
         """Return a copy that a worker may read while this cache changes."""
         copied = copy(self)
-        copied._known = dict(self._known)  # noqa: SLF001 - its own
+        copied.memory = self.memory.snapshot()
         return copied
 
     def missing_segments(self, clip: Clip, frame: float, *, is_edited: bool = True) -> list[int]:
@@ -246,12 +238,12 @@ class InbetweenCache:
 
         For a layer that is not edited, a complete series is enough.
         """
-        pairs, nearest = self._segment_keys(clip), dict[SegmentKey, int]()
-        for number in _by_nearness(clip, frame):
-            known = self._known.get(pairs[number])
+        keys, nearest = self.memory.keys_of(clip), dict[SegmentKey, int]()
+        for number in by_nearness(clip, frame):
+            known = self.memory.find(keys[number])
             is_kept = is_edited or needs_correction(clip)
             if known is None or not (known.inbetweens or (known.is_streamed and not is_kept)):
-                nearest.setdefault(pairs[number], number)
+                nearest.setdefault(keys[number], number)
         return list(nearest.values())
 
     def segments_job(
@@ -277,7 +269,9 @@ class InbetweenCache:
 
     def has_room(self) -> bool:
         """Return whether one more segment of the present clips fits into the budget."""
-        return self._needed() + self._largest[0] <= self.budget
+        memory = self.memory
+        used = memory.other_bytes + memory.needed_bytes
+        return used + memory.largest[0] <= memory.budget.limit
 
     def next_build(self, clip: Clip, frame: float, *, heat: bool) -> SeriesBuild | None:
         """Return the unfinished or next series to build, if any.
@@ -288,47 +282,42 @@ class InbetweenCache:
         build, self.build = self.build, None
         if not self.has(clip):
             return None
-        pairs, used = self._segment_keys(clip), self._needed()
-        if build is not None and build.segment_key in pairs:
+        memory = self.memory
+        keys, used = memory.keys_of(clip), memory.other_bytes + memory.needed_bytes
+        if build is not None and build.segment_key in keys:
             return build
         usual = EXPECTED * len(self.mesh.domain.mesh.vertices)
-        for pair in dict.fromkeys(pairs[number] for number in _by_nearness(clip, frame)):
-            known = self._known[pair]
+        for key in dict.fromkeys(keys[number] for number in by_nearness(clip, frame)):
+            known = memory.find(key)
+            if known is None:
+                continue
             for distortions, series in enumerate((known.series, known.distortions)):
                 if series is not None:
-                    used += self._sizes[pair][1 + distortions]
+                    used += memory.sizes_of(key)[1 + distortions]
                 elif known.sites and known.inbetweens and (heat or not distortions):
-                    if used + (self._largest[1 + distortions] or usual) > self.budget:
+                    if used + (memory.largest[1 + distortions] or usual) > memory.budget.limit:
                         return None
-                    return SeriesBuild(pair, known, distortions=bool(distortions))
+                    return SeriesBuild(key, known, distortions=bool(distortions))
         return None
 
     def set_needed_clips(
         self, present: Sequence[Clip], nearby: Sequence[Clip], frame: float
     ) -> None:
         """Set the playhead, the present clips, and the clips after undo and redo."""
-        self._frame = frame
-        if not (self._present.keys() == set(present) and self._nearby.keys() == set(nearby)):
-            pinned = self._needed_keys()
-            for pair in [pair for pair in self._known if pair in pinned]:
-                self._known[pair] = self._known.pop(pair)
-            self._nearby = {clip: self._segment_keys(clip) for clip in nearby}
-            self._present = {clip: self._segment_keys(clip) for clip in present}
-            there = self._present.values()
+        if self.memory.need(present, nearby, frame):
+            there = self.memory.present.values()
             self._failures = {each for each in self._failures if each[1] in there}
-            self._make_room()
         if self.whole != present[0] and self.has(present[0]):
             self.whole = present[0]
 
     def add(self, found: CacheUpdate) -> None:
         """Add the result of a job for any clip."""
-        anchors, sampler = {clip.layer.anchor for clip in self._present}, found.sampler
+        anchors, sampler = {clip.layer.anchor for clip in self.memory.present}, found.sampler
         if sampler is not None and (not anchors or sampler.anchor in anchors):
             self.sampler = sampler
-        for pair, newer in found.segments.items():
-            older = self._known.pop(pair, None)
-            self._set(pair, newer if older is None else older.joined(newer))
-        self._make_room()
+        for key, newer in found.segments.items():
+            self.memory.add(key, newer)
+        self.memory.budget.make_room()
 
     def add_build(self, build: SeriesBuild) -> None:
         """Take back a series, finished or not."""
@@ -344,87 +333,44 @@ class InbetweenCache:
         """Return the bytes that `release_intermediates` frees once series show a complete clip."""
         if not self.has(clip) or needs_correction(clip):
             return 0
+        memory = self.memory
         passing = [
-            pair
-            for pair in dict.fromkeys(self._segment_keys(clip))
-            if (known := self._known[pair]).inbetweens
+            key
+            for key in dict.fromkeys(memory.keys_of(clip))
+            if (known := memory.find(key))
+            and known.inbetweens
             and known.sites
             and (known.series is None or known.is_streamed)
         ]
         own = self.sampler.extension_bytes if self.sampler is not None else 0
-        return own + sum(self._sizes[pair][0] for pair in passing)
+        return own + sum(memory.sizes_of(key)[0] for key in passing)
 
     def release_intermediates(self) -> None:
         """Free the prepared in-betweens of segments with a complete series."""
-        for pair, known in list(self._known.items()):
+        for key, known in self.memory.items():
             if known.inbetweens is not None and known.is_streamed:
-                self._set(pair, known._replace(inbetweens=None, single_frame=None))
+                self.memory.put(key, known._replace(inbetweens=None, single_frame=None))
         if self.sampler is not None:
-            prepared = (known.poses for known in self._known.values() if known.inbetweens)
+            prepared = (known.poses for _, known in self.memory.items() if known.inbetweens)
             self.sampler.keep_only(frozenset(chain(*prepared)))
             self.sampler.forget_extension()
 
     def mark_failed(self, part: InbetweenPart, clip: Clip) -> None:
         """Record that a part of a clip cannot be computed, until its keys change."""
-        if self._segment_keys(clip) in self._present.values():
-            self._failures.add((part, self._segment_keys(clip)))
+        if self.memory.keys_of(clip) in self.memory.present.values():
+            self._failures.add((part, self.memory.keys_of(clip)))
 
     def has_failed(self, clip: Clip, part: InbetweenPart = "in-betweens") -> bool:
         """Return whether a part of a clip is known to be impossible."""
-        return (part, self._segment_keys(clip)) in self._failures
-
-    def _set(self, pair: SegmentKey, interval: CachedSegment) -> None:
-        self._known[pair], self._sizes[pair] = interval, interval.sizes
-        self._largest = list(map(max, self._largest, interval.sizes))
-
-    def _make_room(self) -> None:
-        """Drop the least needed segments until the rest fits into the budget."""
-        present, pinned = self._needed_keys(self._present), self._needed_keys()
-        # The newest is about to be used.
-        spare = [pair for pair in list(self._known)[:-1] if pair not in pinned]
-        excess = sum(sum(self._sizes[pair]) for pair in spare) - self.spare
-        excess = max(excess, self.nbytes - self.budget)
-        for pair in (*spare, *(pair for pair in self._known if pair in pinned - present)):
-            if excess <= 0:
-                return
-            excess -= sum(self._sizes.pop(pair))
-            del self._known[pair]
-        for clip, pairs in reversed(self._present.items()):
-            for number in reversed(_by_nearness(clip, self._frame)):
-                known = self._known.get(pairs[number])
-                if known is not None and self.nbytes > self.budget:
-                    self._set(pairs[number], known._replace(series=None, distortions=None))
-
-    def _needed(self) -> int:
-        """Return the bytes that the present clips need, without series."""
-        return sum(
-            self._sizes[pair][0] for pair in self._known.keys() & self._needed_keys(self._present)
-        )
-
-    def _segment_keys(self, clip: Clip) -> tuple[SegmentKey, ...]:
-        known = self._present.get(clip) or self._nearby.get(clip)
-        return known or tuple(
-            segment_key(clip, number) for number in range(len(segment_keys(clip)))
-        )
-
-    def _needed_keys(self, *clips: Mapping[Clip, tuple[SegmentKey, ...]]) -> set[SegmentKey]:
-        """Return the segment keys of some clips, by default of all present and nearby clips."""
-        every = clips or (self._present, self._nearby)
-        return set(chain(*(pairs for each in every for pairs in each.values())))
+        return (part, self.memory.keys_of(clip)) in self._failures
 
     def _poses(self) -> frozenset[Pose]:
         """Return the poses whose samples are needed."""
-        prepared = (known.poses for known in self._known.values() if known.inbetweens)
-        present = (key.pose for clip in self._present for key in clip.keys)
+        prepared = (known.poses for _, known in self.memory.items() if known.inbetweens)
+        present = (key.pose for clip in self.memory.present for key in clip.keys)
         return frozenset(chain(*prepared, present))
 
 
 def _shows(known: CachedSegment, clip: Clip) -> bool:
     """Return whether a clip's frames can be shown; corrections need prepared in-betweens."""
     return known.inbetweens is not None if needs_correction(clip) else known.is_ready
-
-
-def _by_nearness(clip: Clip, frame: float) -> list[int]:
-    """Return the segment numbers of a clip, nearest to the frame first."""
-    current = segment_time_at(clip, frame).segment
-    return sorted(range(len(segment_keys(clip))), key=lambda i: (abs(i - current), i < current))
