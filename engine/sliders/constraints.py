@@ -16,7 +16,7 @@ from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.deform.correction.corrector import PointCorrector, build_corrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.point_targets import PointTargets
-from engine.deform.correction.solver import PointSolution, solve_correction
+from engine.deform.correction.solver import PointSolution, take_newton_step
 from engine.dirichlet import Densities, Extension, HilbertTransform
 from engine.interpolation import KeyframeSamples, SampledDomain, sample_domain, sample_keyframes
 from engine.interpolation.inbetweens import PointValues
@@ -120,18 +120,17 @@ class Constraints:
             is_anchored=is_anchored,
         )
 
-    def solve(
+    def step(
         self,
         base: PointValues,
         weights: Floats,
         rho: float,
         densities: Densities | None,
-        start: PointSolution | None,
+        start: PointSolution,
     ) -> PointSolution:
-        """Find h for a frame, given the curb's ρ and the densities of r.
+        """Return h a step nearer to the constraints, given the curb's ρ and the densities of r.
 
-        `base` is at the nodes. `start` is a solution of a similar frame. The result is unfinished
-        if h does not close the periods.
+        `base` is at the nodes. The result is unfinished if h does not close the periods.
         """
         log_fz, _, conj_eta, _ = self.values.blended(weights)
         if densities is not None:
@@ -144,7 +143,7 @@ class Constraints:
         ones, force = np.ones(len(offsets)), FORCE / self.corrector.boundary.size
         targets = PointTargets(offsets, ones, self.is_anchored, force * ones)
         frame = BaseFrame(fz, g, np.zeros_like(fz), -1)
-        found = solve_correction(self.corrector, frame, targets, start, throw=False)
+        found = take_newton_step(self.corrector, frame, targets, start)
         periods = CorrectedFrame.of(self.corrector, frame, found.x).places()[len(offsets) :]
         missed = np.abs(periods).max(initial=0.0)
         is_met = bool(missed <= MET * self.corrector.boundary.size)

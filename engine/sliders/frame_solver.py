@@ -1,7 +1,8 @@
 """The solution of a slider's frame, before any points: ρ, r and h at given weights.
 
-Constraints and curb alternate: h is found for the curbed frame, and the curb for the frame with h,
-until neither changes the other. Steps are accelerated by the steps before (Anderson 1965).
+Constraints and curb alternate: a step of Newton's method changes h for the curbed frame, and the
+curb is found for the frame with h, until neither changes the other. Steps are accelerated by the
+steps before (Anderson 1965).
 """
 
 from collections.abc import Sequence
@@ -11,6 +12,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, nbytes_of
+from engine.deform.correction.solver import PointSolution
 from engine.dirichlet import Densities, HilbertTransform, Refinement
 from engine.errors import EngineError
 from engine.interpolation import SampledDomain
@@ -162,7 +164,9 @@ class FrameSolver:
 
         # The state is what the curb is for: a constant on each hole, and the unknowns of h. On a
         # hole ln |f_z| stays below u + r by a constant (`engine.dirichlet`), which must vanish.
-        found = constraints.solve(base, weights, 1.0, None, None)
+        nothing = constraints.corrector.variables.nothing
+        start = PointSolution(x=nothing, shift=0j, target_errors=np.empty(0), steps=0)
+        found = constraints.step(base, weights, 1.0, None, start)
         state, step = np.append(np.zeros(holes), found.x), np.zeros(holes + len(found.x))
         states: list[Floats] = []
         misses: list[Floats] = []
@@ -175,9 +179,8 @@ class FrameSolver:
             densities, lacking = self._densities(curb), np.zeros(holes)
             if densities is not None:
                 lacking = densities.lacking[:, 0]
-            if densities is not None or blend.rho < 1.0:
-                start = replace(found, x=x)
-                found = constraints.solve(base, weights, blend.rho, densities, start)
+            start = replace(found, x=x)
+            found = constraints.step(base, weights, blend.rho, densities, start)
             miss = np.append(-lacking, found.x - x)
             off = float(np.abs(np.append(lacking, real_parts(found.x - x))).max())
             beyond = off + curb.excess if found.is_finished else np.inf

@@ -112,6 +112,18 @@ def solve_correction(
     return found
 
 
+def take_newton_step(
+    corrector: PointCorrector, base: BaseFrame, targets: PointTargets, start: PointSolution
+) -> PointSolution:
+    """Take one whole step of a correction without limits, for a base that follows each step."""
+    problem = _Problem(corrector, base, targets, None)
+    at = problem.state(start.x, start.shift)
+    step, shift = StepModel(at.frame.x, problem.constraint_rows(at)).solve_step()
+    after = problem.state(start.x + step, start.shift + shift)
+    misses = np.abs(after.frame.places() + after.shift - problem.wanted)[: problem.count]
+    return PointSolution(x=after.frame.x, shift=after.shift, target_errors=misses, steps=1)
+
+
 class _State(NamedTuple):
     """A corrected frame, and the residuals of its points and rotations, (r,)."""
 
