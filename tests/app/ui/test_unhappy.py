@@ -15,14 +15,7 @@ from app.document.commands import handle_commands
 from app.document.keyframe import Target
 from app.document.queries.target_error import HELD_BY_LIMITS, measure_target_errors
 from app.document.settings import FrameRange, Meshing
-from app.editor.actions import (
-    dialog_actions,
-    editing,
-    measuring_jobs,
-    playback,
-    stage_jobs,
-    viewing,
-)
+from app.editor.actions import dialog_actions, editing, playback, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import INSERTING, insert_key
@@ -30,6 +23,7 @@ from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.posing.pose_solver import POSING
 from app.editor.actions.project_files import autosaving, export_settings, files, saving
 from app.editor.actions.timing import keys, timeline_drag
+from app.editor.actions.updates import measuring_jobs, stage_jobs
 from app.editor.parts.timeline import KeyBox
 from app.editor.work.derived import Derived
 from app.errors import CANCELLED, report_progress
