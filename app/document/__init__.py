@@ -111,6 +111,7 @@ from app.document.keyframe import (
     Target as Target,
 )
 from app.document.layer import (
+    FOLDING_JOINTS as FOLDING_JOINTS,
     Layer as Layer,
     PictureFile as PictureFile,
     new_layer as new_layer,
@@ -144,13 +145,6 @@ from app.document.queries.auto_pins import (
     PinnedSegment as PinnedSegment,
     pinned_handles as pinned_handles,
     pinned_segments as pinned_segments,
-)
-from app.document.queries.boundary_stiffness import (
-    bone_region as bone_region,
-    brushed_stiffness as brushed_stiffness,
-    stiff_outline as stiff_outline,
-    stiffness_source as stiffness_source,
-    with_stiffness as with_stiffness,
 )
 from app.document.queries.channel_values.channel_keys import (
     all_keys as all_keys,
@@ -235,6 +229,21 @@ from app.document.queries.layers.visibility import (
     is_visible as is_visible,
     visibility_keys as visibility_keys,
 )
+from app.document.queries.material.bone_directions import (
+    direct_bone as direct_bone,
+    with_directed_bones as with_directed_bones,
+)
+from app.document.queries.material.boundary_stiffness import (
+    bone_region as bone_region,
+    brushed_stiffness as brushed_stiffness,
+    stiff_outline as stiff_outline,
+    stiffness_source as stiffness_source,
+    with_stiffness as with_stiffness,
+)
+from app.document.queries.material.local_limits import (
+    limb_shapes as limb_shapes,
+    limits_along as limits_along,
+)
 from app.document.queries.memo import memoized_on as memoized_on
 from app.document.queries.pose_tangents import (
     PoseSegment as PoseSegment,
@@ -261,6 +270,12 @@ from app.document.rig.applied_motion import (
     UnreadMotion as UnreadMotion,
     require_motions as require_motions,
 )
+from app.document.rig.chains import (
+    DEFAULT_BONE_STIFFNESS as DEFAULT_BONE_STIFFNESS,
+    Bone as Bone,
+    Chain as Chain,
+    find_chains as find_chains,
+)
 from app.document.rig.mirror_names import (
     PAIRS as PAIRS,
     SidePairs as SidePairs,
@@ -271,7 +286,6 @@ from app.document.rig.mirror_names import (
     parse_pairs as parse_pairs,
 )
 from app.document.rig.stiffness import (
-    Bone as Bone,
     transfer_painted_stiffness as transfer_painted_stiffness,
 )
 from app.document.settings import (

@@ -93,10 +93,18 @@ class Target:
     position: complex  # in pixels of the picture, y up; may lie outside the picture
     # Rotation of the shape at the handle in radians; None leaves the rotation free.
     rotation: float | None = None
+    # To which side a joint of bones bends: 1 to the left of the way from root to end, -1 to the
+    # right. None keeps the side to which it bends.
+    side: int | None = None
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         require_point(self.position, _("The target of a handle"))
+        require(
+            self.side in {None, 1, -1},
+            N_("The side of a joint must be 1 (left) or -1 (right), not {side}."),
+            side=self.side,
+        )
         require(
             self.rotation is None or math.isfinite(self.rotation),
             N_("The rotation of a handle must be finite, not {rotation}."),

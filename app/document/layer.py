@@ -31,8 +31,8 @@ from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, Target
 from app.document.layers.attachments import Attachment
 from app.document.layers.groups import BLENDS, BlendMode
 from app.document.rig.applied_motion import AppliedMotion, UnreadMotion, require_motions
+from app.document.rig.chains import Bone, require_chains
 from app.document.rig.mirror_names import SIDES, mirrored_handles_by_name
-from app.document.rig.stiffness import Bone
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.errors import LissomError
 from app.texts import N_, _
@@ -45,6 +45,9 @@ from engine.variant import Variant
 
 Posed = TypeVar("Posed", Keyframe, LibraryPose)
 V = TypeVar("V")
+# Limits at joints of bones: an elbow about as thick as long folds by 130°. A bend θ over a length ℓ
+# of a limb of width W needs ln(σ_a / σ_b) ≥ θ W / ℓ.
+FOLDING_JOINTS = Bounds(k=0.85, sigma_a=4.0, sigma_b=0.15)
 NO_CHANNELS: ChannelKeys = MappingProxyType({})
 NO_KEY = N_("There is no key at frame {frame}.")
 NO_HANDLE = N_("There is no handle with the id {identity}.")
@@ -353,6 +356,14 @@ class Layer:
         held |= {i for track in self.tracks if track.enabled for i in track.handles}
         return frozenset(each.handle for each in self.springs if each.enabled) - held
 
+    @property
+    def bone_joints(self) -> frozenset[int]:
+        """The ids of the handles at which bones start: roots and joints.
+
+        A pose holds the bones there, and not the drawing. The target is the place of the joint.
+        """
+        return frozenset(bone.ends[0] for bone in self.bones if bone.is_limb)
+
     def is_locked(self, identity: int) -> bool:
         return any(handle.locked for handle in self.handles if handle.id == identity)
 
@@ -375,12 +386,17 @@ class Layer:
             logs=pose.logs,
         )
 
+    @property
+    def widest_bounds(self) -> Bounds:
+        """The limits anywhere in the layer: joints of bones have looser ones."""
+        return self.bounds.joined(FOLDING_JOINTS) if self.bone_joints else self.bounds
+
     def is_proven(self, pose: Pose) -> bool:
         """Return whether the pose is proven to satisfy the current limits."""
         proven = pose.certificate
         # The solver proves a pose for the limits at that time, which the person may have changed
         # since.
-        return proven.is_certified and self.bounds.allow(
+        return proven.is_certified and self.widest_bounds.allow(
             k=proven.k, sigma_a=proven.sigma_a, sigma_b=proven.sigma_b
         )
 
@@ -506,7 +522,7 @@ class Layer:
             largest=MOST_HANDLES,
             count=len(self.bones),
         )
-        known = {handle.id for handle in self.handles}
+        known = {handle.id: handle.name for handle in self.handles}
         for bone in self.bones:
             for end in bone.ends:
                 require(
@@ -515,6 +531,7 @@ class Layer:
                     end=end,
                 )
         require_distinct((tuple(sorted(bone.ends)) for bone in self.bones), DUPLICATE_BONES)
+        require_chains(self.bones, known)
 
     def _check_pose(self, pose: Pose, what: str) -> None:
         require(

@@ -60,11 +60,7 @@ def find_limit_preset(bounds: Bounds) -> DistortionLimitPreset | None:
 def relax_limits(bounds: Bounds) -> Bounds | None:
     """Return the next wider limits; None if no preset is wider."""
     for stretch in LIMIT_PRESETS:
-        wider = Bounds(
-            k=max(bounds.k, stretch.bounds.k),
-            sigma_a=max(bounds.sigma_a, stretch.bounds.sigma_a),
-            sigma_b=min(bounds.sigma_b, stretch.bounds.sigma_b),
-        )
+        wider = bounds.joined(stretch.bounds)
         if wider != bounds:
             return wider
     return None

@@ -174,7 +174,7 @@ def certify_clip(
     layer, domain = clip.layer, clip.layer.domain
     boundary = Boundary.sample(domain)
     keys = tuple(
-        (key.frame, certify(clip.layer.map_of(key.pose), boundary, clip.layer.bounds))
+        (key.frame, certify(clip.layer.map_of(key.pose), boundary, clip.layer.widest_bounds))
         for key in clip.keys
     )
     animation = Animation(clip, variant, points=boundary.points)
@@ -184,7 +184,9 @@ def certify_clip(
     )
     every = [each.limits for each in reports]
     every += [DistortionRange(own.k, own.sigma_a, own.sigma_b) for _, own in keys]
-    bounds = DistortionRange(layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b)
+    bounds = DistortionRange(
+        layer.widest_bounds.k, layer.widest_bounds.sigma_a, layer.widest_bounds.sigma_b
+    )
     limits = reduce(DistortionRange.joined, every, bounds)
     corrected = report_corrected(clip, boundary, limits, variant, carried)
     return Report(keys=keys, segments=reports, corrected=corrected, cycles=layer.cycles)
@@ -209,7 +211,7 @@ def _segment_report(
     )
     limits = bound
     if segment.has_smooth_tangent or inbetweens.corrections:
-        bounds = layer.bounds
+        bounds = layer.widest_bounds
         limits = reduce(
             DistortionRange.joined, ends, DistortionRange(bounds.k, bounds.sigma_a, bounds.sigma_b)
         )

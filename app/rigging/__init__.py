@@ -9,6 +9,7 @@ Imports: `engine`.
 from app.rigging.anatomy.handle_places import suggest_handles as suggest_handles
 from app.rigging.anatomy.joints import suggest_joints as suggest_joints
 from app.rigging.anatomy.kind_guess import guess_kind as guess_kind
+from app.rigging.kinematics.chains import bend_side as bend_side, solve_chain as solve_chain
 from app.rigging.kinematics.recordings import fit_keys as fit_keys
 from app.rigging.kinematics.springs import (
     FADE_FRAMES as FADE_FRAMES,

@@ -13,6 +13,7 @@ from app.document import (
     Pose,
     Target,
     keyed_pose_at,
+    limits_along,
     segment_keys,
     segment_time_at,
     slider_weights_at,
@@ -20,8 +21,10 @@ from app.document import (
     with_stiffness,
 )
 from app.motion import Animation, PoseSampler
+from app.solving.limb_targets import carry_body, solve_limbs
+from app.solving.limbs import JOINT_FORCE, Limbs, PosedLimbs, locate_joints
 from engine.arrays import Booleans, Complexes
-from engine.deform import BoundedPull, Deformer, DistanceConstraint, Handles, HandleTargets, State
+from engine.deform import Armature, BoundedPull, Deformer, Handles, HandleTargets, State
 from engine.errors import EngineError
 from engine.maps import Boundary, Certificate, HarmonicMap, certify
 
@@ -30,9 +33,6 @@ from engine.maps import Boundary, Certificate, HarmonicMap, certify
 LEEWAY = 0.02
 # Weight of a joint; handles usually have weight 1.
 PIN = 10.0
-# Largest force, over the shape's diameter, with which joints of bones keep their places against a
-# drag beyond them.
-JOINT_PULL = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -46,6 +46,7 @@ class Rig:
     layer: Layer
     handles: tuple[Handle, ...]
     deformer: Deformer
+    limbs: Limbs | None = None
 
     @classmethod
     def of(
@@ -60,7 +61,6 @@ class Rig:
         """
         domain, pins = layer.domain, _pins(layer)
         carried = layer.sprung_handles.difference(pulled)
-        held = tuple(handle for handle in layer.handles if handle.id not in carried)
         if earlier is not None and earlier.layer.domain is domain:
             boundary = earlier.deformer.boundary
             is_same = stiffness_source(earlier.layer) == stiffness_source(layer)
@@ -68,94 +68,35 @@ class Rig:
             boundary, is_same = Boundary.sample(domain), False
         if not is_same:
             boundary, earlier = with_stiffness(layer, boundary), None
+        limbs = earlier.limbs if earlier is not None else Limbs.of(layer, boundary)
+        # A joint is a place of bones, which do not hold the drawing there.
+        carried |= layer.bone_joints if limbs is not None else frozenset()
+        held = tuple(handle for handle in layer.handles if handle.id not in carried)
         if earlier and earlier.handles == held and earlier.pins == pins:
             handles = earlier.deformer.handles
         else:
-            places = [*(handle.position for handle in held), *pins]
-            pulls = [*(handle.effective_weight for handle in held), *(PIN for _ in pins)]
-            handles = Handles.place(boundary, np.array(places, dtype=np.complex128), pulls)
-        # Stiff parts deform less in new poses.
-        bounds = layer.bounds.scaled_by_stiffness(boundary)
+            handles = _place_handles(boundary, held, pins)
+        # Stiff parts deform less in new poses, and joints of bones more.
+        bounds = limits_along(layer, boundary)
         deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
-        return cls(layer=layer, handles=held, deformer=deformer)
+        return cls(layer=layer, handles=held, deformer=deformer, limbs=limbs)
 
     @property
     def pins(self) -> tuple[complex, ...]:
         """Points of the layer that a drag keeps fixed."""
         return _pins(self.layer)
 
-    def build_targets(
-        self,
-        targets: Mapping[int, Target],
-        pins: tuple[Target, ...],
-        hands: Sequence[BoundedPull] = (),
-    ) -> HandleTargets:
-        """Return the targets in the form of the deformer.
+    def place_handles(self, armature: Armature | None = None) -> Handles:
+        """Return the rig's handles with an armature."""
+        return _place_handles(self.deformer.boundary, self.handles, self.pins, armature)
 
-        Each of `hands` refers to handles by id. Handles that no longer exist or hold no pose are
-        left out.
-        """
-        index = {handle.id: i for i, handle in enumerate(self.handles)}
-        pulling = [
-            BoundedPull([index[i] for i in sorted(hand.handles) if i in index], hand.max_force)
-            for hand in (*hands, *self.find_yielding_joints(hands))
-            if not index.keys().isdisjoint(hand.handles)
-        ]
-        wanted = [*(targets[identity] for identity in index), *pins]
-        return self.deformer.handles.targets(
-            np.array([target.position for target in wanted], dtype=np.complex128),
-            [np.nan if target.rotation is None else target.rotation for target in wanted],
-            pulling,
-            self._links(index) if pulling else (),
-        )
-
-    def _links(self, index: Mapping[int, int]) -> list[DistanceConstraint]:
-        """Return the distance constraints between the ends of stiff bones."""
-        links = []
-        for bone in self.layer.bones:
-            if bone.stiffness > 1 and index.keys() >= set(bone.ends):
-                start, end = (self.layer.handle(identity).position for identity in bone.ends)
-                limits, rest = (
-                    self.layer.bounds.scaled_by(np.array(bone.stiffness)),
-                    abs(end - start),
-                )
-                nearest, farthest = rest * float(limits.sigma_b), rest * float(limits.sigma_a)
-                links.append(
-                    DistanceConstraint(index[bone.ends[0]], index[bone.ends[1]], nearest, farthest)
-                )
-        return links
-
-    def find_yielding_joints(self, hands: Sequence[BoundedPull]) -> list[BoundedPull]:
-        """Return the joints that yield to a drag beyond them, one pull each.
-
-        They lie along bones from a dragged handle to the next end or branch.
-        """
-        pulled = {identity for hand in hands for identity in hand.handles}
-        locked = {handle.id for handle in self.layer.handles if handle.locked}
-        beside: dict[int, list[int]] = {}
-        for first, second in (bone.ends for bone in self.layer.bones if bone.stiffness > 1):
-            beside.setdefault(first, []).append(second)
-            beside.setdefault(second, []).append(first)
-        joints, waiting = set[int](), list(pulled)
-        while waiting:
-            for joint in beside.get(waiting.pop(), ()):
-                if len(beside[joint]) == 2 and joint not in joints | pulled | locked:
-                    joints.add(joint)
-                    waiting.append(joint)
-        return [BoundedPull([joint], JOINT_PULL) for joint in sorted(joints)]
-
-    def make_pose(
-        self, shape: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
-    ) -> Pose:
-        """Return a map as a pose with these targets; other handles get their own positions."""
-        held = {handle.id for handle in self.handles}
-        carried = [handle for handle in self.layer.handles if handle.id not in held]
-        places = shape(np.array([handle.position for handle in carried], dtype=np.complex128))
-        here = {
-            handle.id: replace(targets[handle.id], position=complex(place), rotation=None)
-            for handle, place in zip(carried, places, strict=True)
-        }
-        return Pose.of(shape, {**targets, **here}, certificate)
+    def posed_at(
+        self, shape: HarmonicMap, start: Mapping[int, Target], deformer: Deformer | None = None
+    ) -> "PosedRig":
+        """Return the rig with its limbs in the pose of a map with these targets."""
+        return PosedRig(
+            rig=self, shape=shape, start=start, deformer=deformer or self.deformer
+        ).keeping_body(self.limbs is not None)
 
     def start_at(self, shape: HarmonicMap) -> State:
         """Return the solver's state at a map, or at rest if the map folds."""
@@ -170,6 +111,102 @@ class Rig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PosedRig:
+    """A rig in the pose in which a drag starts.
+
+    The deformer's handles include the bones of the limbs, as they are in this pose. Targets that
+    differ from those of the start are dragged.
+    """
+
+    rig: Rig
+    shape: HarmonicMap
+    start: Mapping[int, Target]
+    deformer: Deformer
+    limbs: PosedLimbs | None = None
+
+    def keeping_body(self, keeps: bool) -> "PosedRig":  # noqa: FBT001 - a state
+        """Return the same with or without a body that keeps its shape."""
+        limbs, known = self.rig.limbs, self.limbs
+        if limbs is None or (known is not None and known.has_body == keeps):
+            return self
+        boundary = self.deformer.boundary
+        posed = PosedLimbs.at(limbs, boundary, self.shape, has_body=keeps)
+        handles = self.rig.place_handles(posed.armature)
+        return replace(self, limbs=posed, deformer=replace(self.deformer, handles=handles))
+
+    def with_rig(self, rig: Rig) -> "PosedRig":
+        """Return the same with a rig of other handles."""
+        if rig.deformer.handles is self.rig.deformer.handles:
+            return replace(self, rig=rig)
+        armature = self.limbs and self.limbs.armature
+        handles = rig.place_handles(armature) if armature else rig.deformer.handles
+        return replace(self, rig=rig, deformer=replace(self.deformer, handles=handles))
+
+    def follow(self, targets: Mapping[int, Target]) -> tuple["PosedRig", Mapping[int, Target]]:
+        """Return the targets with joints and the body where a drag carries them."""
+        limbs, layer = self.rig.limbs, self.rig.layer
+        if limbs is None:
+            return self, targets
+        body = carry_body(layer, limbs, self.start, targets)
+        posed = self.keeping_body(body.is_rigid)
+        joints = posed.limbs.joints if posed.limbs is not None else {}
+        return posed, solve_limbs(layer, limbs, joints, self.start, body.targets)
+
+    def build_targets(
+        self,
+        targets: Mapping[int, Target],
+        pins: tuple[Target, ...],
+        hands: Sequence[BoundedPull] = (),
+    ) -> HandleTargets:
+        """Return targets of `follow` in the form of the deformer.
+
+        Each of `hands` refers to handles by id. Handles that no longer exist or hold no pose are
+        left out.
+        """
+        index = {handle.id: i for i, handle in enumerate(self.rig.handles)}
+        pulling = [
+            BoundedPull(
+                [index[i] for i in sorted(hand.handles) if i in index],
+                # A limb folds against more resistance than a shape without bones.
+                max(hand.max_force, 0.0 if self.limbs is None else JOINT_FORCE),
+            )
+            for hand in hands
+            if not index.keys().isdisjoint(hand.handles)
+        ]
+        wanted = [*(targets[identity] for identity in index), *pins]
+        aims = []
+        if self.limbs is not None:
+            aims = self.limbs.aims({i: target.position for i, target in targets.items()})
+        return self.deformer.handles.targets(
+            np.array([target.position for target in wanted], dtype=np.complex128),
+            [np.nan if target.rotation is None else target.rotation for target in wanted],
+            pulling,
+            aims,
+        )
+
+    def make_pose(
+        self, shape: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
+    ) -> Pose:
+        """Return a map as a pose with these targets; other handles get their own positions.
+
+        Joints get the places to which their bones carry them.
+        """
+        rig = self.rig
+        held = {handle.id for handle in rig.handles}
+        carried = [handle for handle in rig.layer.handles if handle.id not in held]
+        places = shape(np.array([handle.position for handle in carried], dtype=np.complex128))
+        found = {h.id: complex(place) for h, place in zip(carried, places, strict=True)}
+        if rig.limbs is not None:
+            joints = locate_joints(rig.limbs, rig.deformer.boundary, shape)
+            found |= {identity: joints[identity] for identity in found.keys() & joints.keys()}
+        here = {
+            identity: replace(targets[identity], position=place, rotation=None)
+            for identity, place in found.items()
+        }
+        return Pose.of(shape, {**targets, **here}, certificate)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DragSolver:
     """The state of a drag; every map in between is certified.
 
@@ -177,21 +214,20 @@ class DragSolver:
     of the fixed points.
     """
 
-    rig: Rig
-    deformer: Deformer
+    posed: PosedRig
     state: State
     pins: tuple[Target, ...] = ()
 
     @classmethod
     def begin(cls, rig: Rig, pose: Pose) -> Self:
         """Return the drag that begins with a pose; a folded pose raises an `EngineError`."""
-        deformer = rig.allow_pose(pose)
-        return cls(
-            rig=rig,
-            deformer=deformer,
-            state=deformer.start(rig.layer.map_of(pose)),
-            pins=pins_of(rig.layer, pose),
-        )
+        shape = rig.layer.map_of(pose)
+        posed = rig.posed_at(shape, pose.targets, rig.allow_pose(pose))
+        return cls(posed=posed, state=posed.deformer.start(shape), pins=pins_of(rig.layer, pose))
+
+    @property
+    def rig(self) -> Rig:
+        return self.posed.rig
 
     @property
     def is_over(self) -> bool:
@@ -210,47 +246,57 @@ class DragSolver:
         `pulled` are the ids of dragged handles. They are included even with springs.
         """
         rig = Rig.of(self.rig.layer, self.rig, pulled)
-        deformer = self.deformer
-        if rig.deformer.handles is not deformer.handles:
-            deformer = replace(deformer, handles=rig.deformer.handles)
-        wanted = rig.build_targets(targets, self.pins, hands)
+        posed, followed = self.posed.with_rig(rig).follow(targets)
+        wanted = posed.build_targets(followed, self.pins, hands)
         state = self.state
         for _ in range(steps):
-            state = deformer.step(state, wanted)
+            state = posed.deformer.step(state, wanted)
             if state.status.is_final:
                 break
-        return replace(self, rig=rig, deformer=deformer, state=state)
+        return replace(self, posed=posed, state=state)
 
     def release(
         self, targets: Mapping[int, Target], hands: Sequence[BoundedPull]
     ) -> tuple["DragSolver", Mapping[int, Target]]:
         """Return the drag after release, and the new targets of the dragged handles.
 
-        Yielding joints get new targets too. A pose at rest is also at rest for the new targets,
-        unless a bone at its limit pulls at a fixed handle.
+        Ends of limbs that are dragged beyond reach are left where the bones reach. A pose at rest
+        is also at rest for the new targets.
         """
-        wanted = self.rig.build_targets(targets, self.pins, hands)
-        at = self.deformer.positions(self.state)
-        left = wanted.released(at, self.deformer.handles.stiffness).positions
-        giving = (*hands, *self.rig.find_yielding_joints(hands))
-        pulled = {identity for hand in giving for identity in hand.handles}
+        posed, followed = self.posed.follow(targets)
+        wanted = posed.build_targets(followed, self.pins, hands)
+        left = wanted.released(posed.deformer.positions(self.state)).positions
+        pulled = {identity for hand in hands for identity in hand.handles}
         places = {
-            handle.id: replace(targets[handle.id], position=complex(place))
-            for handle, place in zip(self.rig.handles, left, strict=False)
+            handle.id: replace(followed[handle.id], position=complex(place))
+            for handle, place in zip(posed.rig.handles, left, strict=False)
             if handle.id in pulled
         }
-        wanted = self.rig.build_targets({**targets, **places}, self.pins)
-        return replace(self, state=self.deformer.release(self.state, wanted)), places
+        wanted = posed.build_targets({**followed, **places}, self.pins)
+        return replace(self, state=posed.deformer.release(self.state, wanted)), places
 
     def make_pose(self, targets: Mapping[int, Target]) -> Pose:
         """Return the current state as a pose with these targets."""
-        return self.rig.make_pose(self.state.map, targets, self.state.certificate)
+        return self.posed.make_pose(
+            self.state.map, self.posed.follow(targets)[1], self.state.certificate
+        )
 
 
 def pins_of(layer: Layer, pose: Pose) -> tuple[Target, ...]:
     """Return the targets of the points that a drag keeps fixed: the anchor of an attached layer."""
     places = layer.map_of(pose)(np.array(_pins(layer), dtype=np.complex128))
     return tuple(Target(position=complex(place)) for place in places)
+
+
+def _place_handles(
+    boundary: Boundary,
+    held: Sequence[Handle],
+    pins: Sequence[complex],
+    armature: Armature | None = None,
+) -> Handles:
+    places = [*(handle.position for handle in held), *pins]
+    pulls = [*(handle.effective_weight for handle in held), *(PIN for _ in pins)]
+    return Handles.place(boundary, np.array(places, dtype=np.complex128), pulls, armature)
 
 
 def _pins(layer: Layer) -> tuple[complex, ...]:
@@ -296,7 +342,7 @@ def fit_shown_pose(
             *(share * (new - old) for new, old in zip(fitted.columns, own.columns, strict=True))
         )
         # The displayed frame may be older than the current stiffness.
-        certificate = certify(mixed, boundary, layer.bounds)
+        certificate = certify(mixed, boundary, rig.deformer.bounds)
         # A frame with sliders may lie on the limits, and its fit a little beyond.
         is_unfolded = certificate.winding == 0 and certificate.k < 1 and certificate.sigma_b > 0
         if certificate.is_certified or (with_sliders and is_unfolded):
@@ -308,7 +354,7 @@ def fit_shown_pose(
         handle.id: Target(position=complex(place))
         for handle, place in zip(layer.handles, places, strict=True)
     }
-    return Pose.of(mixed, targets, certificate)
+    return rig.posed_at(mixed, targets).make_pose(mixed, targets, certificate)
 
 
 def fit_map(

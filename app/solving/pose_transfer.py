@@ -175,13 +175,14 @@ def solve_from_map(
     ways: tuple[StartingPoint, ...] = tuple(StartingPoint),
 ) -> Pose:
     """Return the pose for these targets, solved from a map with some starting points."""
-    deformer, wanted = rig.deformer, rig.build_targets(targets, tuple(pins))
+    posed, targets = rig.posed_at(begin, {}).follow(targets)
+    deformer, wanted = posed.deformer, posed.build_targets(targets, tuple(pins))
     state, _ = deformer.settle(
         rig.start_at(begin), wanted, ways=ways, at_most=MOST_STEPS, throw=False
     )
     # Steps that lead into the limits are proven for wider ones.
     proven = certify(state.map, deformer.boundary, deformer.bounds)
-    return rig.make_pose(state.map, targets, proven)
+    return posed.make_pose(state.map, targets, proven)
 
 
 def find_initial_map(

@@ -139,18 +139,17 @@ def _solved(resolver: KeyResolver, rig: Rig, index: int) -> Pose:
             pins = tuple(transfer_target(pin, shape, before.anchor, into.anchor) for pin in pins)
     if not resolver.solves_all and certify(first, boundary, bounds).is_certified:
         return pose
-    wanted = rig.build_targets(pose.targets, pins)
-    state, _ = rig.deformer.settle(rig.start_at(first), wanted, at_most=MOST_STEPS, throw=False)
+    posed, targets = rig.posed_at(first, pose.targets).follow(pose.targets)
+    wanted, deformer = posed.build_targets(targets, pins), posed.deformer
+    state, _ = deformer.settle(rig.start_at(first), wanted, at_most=MOST_STEPS, throw=False)
     certificate = certify(state.map, boundary, bounds)
     if into is not None and not certificate.is_certified:
         # If the new shape is larger, the transferred map may not lead back into the limits.
-        state, _ = rig.deformer.settle(
-            rig.deformer.start(), wanted, at_most=MOST_STEPS, throw=False
-        )
+        state, _ = deformer.settle(deformer.start(), wanted, at_most=MOST_STEPS, throw=False)
         certificate = certify(state.map, boundary, bounds)
     if into is None and not certificate.is_certified:
         return replace(pose, certificate=certify(first, boundary, bounds))
-    return rig.make_pose(state.map, pose.targets, certificate)
+    return posed.make_pose(state.map, targets, certificate)
 
 
 def transfer_target(target: Target, shape: HarmonicMap, place: complex, to: complex) -> Target:

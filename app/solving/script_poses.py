@@ -31,7 +31,8 @@ def solve_pose(rig: Rig, start: Pose, key: PoseKey, where: str) -> tuple[Pose, l
     layer = rig.layer
     identities = {handle.name: handle.id for handle in layer.handles}
     named = {identities[name]: place for name, place in key.targets.items()}
-    turned = {identities[name]: turn for name, turn in key.turns.items()}
+    turned = {identities[name]: turn for name, turn in {**key.turns, **key.angles}.items()}
+    sides = {identities[name]: side for name, side in key.sides.items()}
     carried = layer.sprung_handles & named.keys()
     notices = [
         _(
@@ -42,14 +43,14 @@ def solve_pose(rig: Rig, start: Pose, key: PoseKey, where: str) -> tuple[Pose, l
     for identity in carried:
         del named[identity]
     targets = dict(start.targets)
-    for identity in named.keys() | (turned.keys() - layer.sprung_handles):
+    for identity in named.keys() | sides.keys() | (turned.keys() - layer.sprung_handles):
         before = targets[identity]
-        place = named.get(identity, before.position)
-        targets[identity] = Target(position=place, rotation=turned.get(identity, before.rotation))
-    if all(
-        (start.targets[i].position, start.targets[i].rotation) == (target.position, target.rotation)
-        for i, target in targets.items()
-    ):
+        targets[identity] = Target(
+            position=named.get(identity, before.position),
+            rotation=turned.get(identity, before.rotation),
+            side=sides.get(identity, before.side),
+        )
+    if all(start.targets[i] == target for i, target in targets.items()):
         return start, notices
     hands = tuple(BoundedPull((identity,), key.pull) for identity in named)
     drag = DragSolver.begin(rig, start).step_towards(targets, MOST_STEPS, hands)
@@ -57,8 +58,6 @@ def solve_pose(rig: Rig, start: Pose, key: PoseKey, where: str) -> tuple[Pose, l
     drag, released = drag.release(targets, hands)
     left = {**targets, **released}
     pose = drag.step_towards(left, MOST_STEPS).make_pose(left)
-    # Joints of bones may yield, since the script does not hold them.
-    joints = {identity for hand in rig.find_yielding_joints(hands) for identity in hand.handles}
     notices += [
         _("{where}: {handle!r} is {error:.1f} px from its target, {reason}").format(
             where=where,
@@ -67,7 +66,6 @@ def solve_pose(rig: Rig, start: Pose, key: PoseKey, where: str) -> tuple[Pose, l
             reason=target_errors.reason,
         )
         for identity, error in target_errors.errors.items()
-        if identity not in joints
     ]
     return pose, notices
 

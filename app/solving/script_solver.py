@@ -19,6 +19,7 @@ from app.document import (
     is_visible,
     layer_commands,
     stiffness_commands,
+    with_directed_bones,
 )
 from app.errors import LissomError
 from app.solving.drag_solver import Rig
@@ -211,18 +212,19 @@ def _with_material(
             )
         document = stiffness_commands.paint_stiffness(identity, [at], **options)(document)
     ids = [handle.id for handle in document.layer(identity).handles]
+    layer = document.layer(identity)
     for bone in part.bones:
         ends = (ids[bone.ends[0]], ids[bone.ends[1]])
-        first, second = (document.layer(identity).handle(end).name for end in ends)
         try:
-            document = stiffness_commands.add_bone(identity, ends, bone.stiffness)(document)
+            layer = stiffness_commands.with_bone(layer, replace(bone, ends=ends))
         except EngineError as error:
+            first, second = (layer.handle(end).name for end in ends)
             raise LissomError(
-                _("stiff from {first!r} to {second!r}: {error}").format(
+                _("bone from {first!r} to {second!r}: {error}").format(
                     first=first, second=second, error=message_of(error)
                 )
             ) from error
-    return document, notices
+    return document.with_layer(with_directed_bones(layer)), notices
 
 
 def _posed(

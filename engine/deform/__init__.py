@@ -6,6 +6,12 @@ Imports: `engine.dirichlet`, `engine.maps`, `engine.geometry`.
 """
 
 from engine.deform.deformer import Deformer as Deformer
+from engine.deform.forces.armature import Armature as Armature
+from engine.deform.forces.bones import Aim as Aim, Hinge as Hinge, Shaft as Shaft
+from engine.deform.forces.pulls import (
+    MAX_PULL_FORCE as MAX_PULL_FORCE,
+    BoundedPull as BoundedPull,
+)
 from engine.deform.handles import (
     MOST_HANDLES as MOST_HANDLES,
     Handles as Handles,
@@ -21,9 +27,4 @@ from engine.deform.model.newton import (
     newton_direction as newton_direction,
 )
 from engine.deform.model.objective import Objective as Objective
-from engine.deform.pulls import (
-    MAX_PULL_FORCE as MAX_PULL_FORCE,
-    BoundedPull as BoundedPull,
-    DistanceConstraint as DistanceConstraint,
-)
 from engine.deform.state import State as State, Statistics as Statistics, Status as Status

@@ -159,7 +159,7 @@ class Deformer(ConstrainedShape):
         """
         targets, is_minimum = state.targets, state.status in (Status.CONVERGED, Status.AT_LIMITS)
         if is_minimum and targets is not None:
-            exact = targets.released(self.positions(state), self.handles.stiffness)
+            exact = targets.released(self.positions(state))
             if exact.is_same(left):
                 return replace(state, targets=left)
         return replace(state, status=Status.MOVING, search=None, outcome=None, starting_points=())

@@ -8,8 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, as_points, as_reals, readonly, require_kind
+from engine.deform.forces.armature import Armature
+from engine.deform.forces.bones import Aim, Aims
+from engine.deform.forces.pulls import BoundedPull, BoundedPulls
 from engine.deform.model.position_hessian import STIFFNESS, position_hessian
-from engine.deform.pulls import BoundedPull, BoundedPulls, DistanceConstraint, DistanceConstraints
 from engine.errors import EngineError
 from engine.geometry import Domain, diameter, require_inside
 from engine.maps import Boundary
@@ -56,18 +58,20 @@ class HandleTargets(NamedTuple):
         Angles that differ by whole turns are the same target.
     pulls : BoundedPulls or None
         Handles without a pull are held without a limit of force.
+    aims : Aims or None
+        Targets of places that shafts carry.
     """
 
     positions: Complexes
     rotations: Floats
     pulls: BoundedPulls | None = None
-    distance_constraints: DistanceConstraints | None = None
+    aims: Aims | None = None
 
     def is_same(self, other: "HandleTargets | None") -> bool:
         if other is None or other is self:
             return other is self
         ours, theirs = (
-            [*targets[:2], *(targets.pulls or ()), *(targets.distance_constraints or ())]
+            [*targets[:2], *(targets.pulls or ()), *(targets.aims or ())]
             for targets in (self, other)
         )
         return len(ours) == len(theirs) and all(
@@ -82,8 +86,8 @@ class HandleTargets(NamedTuple):
             errors = errors - self.pulls.spread_to_handles(self.pulls.slack(errors))
         return errors
 
-    def released(self, positions: Complexes, stiffness: Floats) -> "HandleTargets":
-        """Return the targets after release, without distance constraints.
+    def released(self, positions: Complexes) -> "HandleTargets":
+        """Return the targets after release.
 
         Each target (h,) lies a little beyond the handle's position, in the direction of its pull.
         At rest the same pose is then the one of least energy.
@@ -93,9 +97,7 @@ class HandleTargets(NamedTuple):
         left = self.positions + self.pulls.spread_to_handles(
             self.pulls.slack(positions - self.positions)
         )
-        if self.distance_constraints is not None:
-            left = left - self.distance_constraints.gradient(positions) / (2.0 * stiffness)
-        return HandleTargets(left, self.rotations)
+        return HandleTargets(left, self.rotations, None, self.aims)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -120,9 +122,12 @@ class Handles:
     basis_coordinates, basis_derivatives : complex128, shape (h, r)
         The same for the boundary's basis.
     hessian : float64, shape (u, u)
-        Hessian of the energy of the positions, in the order of `Objective`.
+        Constant Hessian of the energy of the positions and the armature, in the order of
+        `Objective`.
     coincident : tuple of (int, int)
         Pairs of handles at one point.
+    armature : Armature or None
+        Bones of the shape.
     """
 
     points: Complexes
@@ -135,10 +140,15 @@ class Handles:
     basis_derivatives: Complexes
     hessian: Floats
     coincident: tuple[tuple[int, int], ...]
+    armature: Armature | None = None
 
     @classmethod
     def place(
-        cls, boundary: Boundary, points: npt.ArrayLike, weights: npt.ArrayLike | None = None
+        cls,
+        boundary: Boundary,
+        points: npt.ArrayLike,
+        weights: npt.ArrayLike | None = None,
+        armature: Armature | None = None,
     ) -> "Handles":
         """Place handles on a shape.
 
@@ -165,6 +175,9 @@ class Handles:
         of_basis = coordinates @ boundary.basis
         distances = np.abs(points[:, None] - points)
         first, second = np.nonzero(np.triu(distances <= COINCIDENT * boundary.size, 1))
+        hessian = position_hessian(boundary, of_basis, stiffness)
+        if armature is not None:
+            hessian += armature.hessian(boundary)
         return cls(
             points=points,
             stiffness=readonly(stiffness),
@@ -174,8 +187,9 @@ class Handles:
             derivatives=readonly(derivatives),
             basis_coordinates=readonly(of_basis),
             basis_derivatives=readonly(derivatives @ boundary.basis),
-            hessian=readonly(position_hessian(boundary, of_basis, stiffness)),
+            hessian=readonly(hessian),
             coincident=tuple(zip(first.tolist(), second.tolist(), strict=True)),
+            armature=armature,
         )
 
     def softened(self, factor: float) -> "Handles":
@@ -184,6 +198,7 @@ class Handles:
             self,
             stiffness=readonly(factor * self.stiffness),
             hessian=readonly(factor * self.hessian),
+            armature=self.armature and self.armature.softened(factor),
         )
 
     def targets(
@@ -191,16 +206,16 @@ class Handles:
         positions: npt.ArrayLike,
         rotations: npt.ArrayLike | None = None,
         hands: Sequence[BoundedPull] = (),
-        links: Sequence[DistanceConstraint] = (),
+        aims: Sequence[Aim] = (),
     ) -> HandleTargets:
-        """Check the targets, bounded pulls and distance constraints of the handles.
+        """Check the targets and bounded pulls of the handles, and the aims of their armature.
 
         Raises
         ------
         EngineError
             If the number of targets is not the number of handles; if a target is not finite or
             absurdly far away; if two handles at one point get different targets; or if a pull or
-            constraint names a handle that does not exist.
+            an aim names a handle or a shaft that does not exist.
         """
         targets = as_points(positions, "targets")
         if len(targets) != len(self.points):
@@ -214,9 +229,9 @@ class Handles:
             if abs(targets[i] - targets[j]) > APART * size:
                 raise EngineError(OTHER_TARGETS, first=i, second=j)
         pulling = BoundedPulls.of(hands, self.stiffness, self.around, size)
-        linked = DistanceConstraints.of(links, self.around * STIFFNESS / size**2)
+        aimed = Aims.of(aims, 0 if self.armature is None else len(self.armature.stiffness))
         if rotations is None:
-            return HandleTargets(targets, np.full(len(targets), np.nan), pulling, linked)
+            return HandleTargets(targets, np.full(len(targets), np.nan), pulling, aimed)
         angles = as_reals(rotations, "rotations")
         if angles.shape != targets.shape or np.isinf(angles).any():
             raise EngineError(
@@ -229,7 +244,7 @@ class Handles:
         for i, j in self.coincident:
             if abs(np.exp(1j * angles[i]) - np.exp(1j * angles[j])) > APART:
                 raise EngineError(OTHER_ROTATIONS, first=i, second=j)
-        return HandleTargets(targets, angles, pulling, linked)
+        return HandleTargets(targets, angles, pulling, aimed)
 
 
 def require_held(points: npt.ArrayLike, domain: Domain) -> Complexes:

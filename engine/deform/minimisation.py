@@ -53,9 +53,9 @@ MISFIT = 0.12
 def begin_searches(
     shape: ConstrainedShape, state: State, targets: HandleTargets, ways: tuple[StartingPoint, ...]
 ) -> State:
-    if targets.pulls is not None:
+    if targets.pulls is not None or targets.aims is not None:
         # From the handles' present positions one search finds the same minimum as all, in half the
-        # steps.
+        # steps. A search from elsewhere could bend a limb to the other side.
         ways = (StartingPoint.HERE,)
     elif StartingPoint.REST in ways and state.map.is_same(shape.rest_map):
         ways = tuple(way for way in ways if way is not StartingPoint.HERE)

@@ -116,9 +116,11 @@ def cut_to_radius(
         turn = np.angle(np.exp(1j * (targets.rotations[turning] - now)))
         near[turning] = now + np.minimum(np.maximum(turn, -most), most)
         leashed = leashed or bool(np.abs(turn).max() > most)
-    return HandleTargets(
-        positions + cut * pull, near, targets.pulls, targets.distance_constraints
-    ), leashed
+    aims = targets.aims
+    if handles.armature is not None and aims is not None:
+        aims, is_far = handles.armature.cut_aims(jet.shaft_positions, aims, distance)
+        leashed = leashed or is_far
+    return HandleTargets(positions + cut * pull, near, targets.pulls, aims), leashed
 
 
 def align_rigidly(

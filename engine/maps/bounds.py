@@ -79,6 +79,15 @@ class LocalBounds:
             sigma_b=np.exp(np.log(self.sigma_b) / root),
         )
 
+    def loosened(self, limits: "LocalBounds", shares: Floats) -> "LocalBounds":
+        """Return the limits moved towards wider ones by a share (s,) of the way, from 0 to 1."""
+        further = 1.0 - shares
+        return LocalBounds(
+            k=further * self.k + shares * np.maximum(self.k, limits.k),
+            sigma_a=self.sigma_a**further * np.maximum(self.sigma_a, limits.sigma_a) ** shares,
+            sigma_b=self.sigma_b**further * np.minimum(self.sigma_b, limits.sigma_b) ** shares,
+        )
+
     def towards_identity(self, fraction: float) -> "LocalBounds":
         """Return the limits moved by a fraction of their distance from the identity."""
         rest = 1.0 - fraction
@@ -111,6 +120,14 @@ class Bounds(LocalBounds):
     k: float = 0.8
     sigma_a: float = 5.0
     sigma_b: float = 0.2
+
+    def joined(self, other: "Bounds") -> "Bounds":
+        """Return the wider of two limits each."""
+        return Bounds(
+            k=max(self.k, other.k),
+            sigma_a=max(self.sigma_a, other.sigma_a),
+            sigma_b=min(self.sigma_b, other.sigma_b),
+        )
 
     def __post_init__(self) -> None:
         for name in ("k", "sigma_a", "sigma_b"):

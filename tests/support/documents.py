@@ -57,7 +57,7 @@ from app.document.layer import PictureFile, new_layer
 from app.document.layers.attachments import Attachment
 from app.document.layers.groups import Group
 from app.document.model import Document
-from app.document.rig.stiffness import Bone
+from app.document.rig.chains import Bone
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.errors import ImportLog
 from app.export_formats import EXPORT_FORMATS, MeshOptions, SpriteSheetOptions

@@ -8,14 +8,10 @@ import numpy as np
 from app.document.checks import require
 from app.document.commands.command import layer_command
 from app.document.layer import Layer
-from app.document.queries.boundary_stiffness import bone_region, brushed_stiffness
+from app.document.queries.material.boundary_stiffness import bone_region, brushed_stiffness
+from app.document.rig.chains import DEFAULT_BONE_STIFFNESS, Bone
 from app.document.rig.mirror_names import PAIRS, SidePairs, mirrored_handles_by_name
-from app.document.rig.stiffness import (
-    DEFAULT_BONE_STIFFNESS,
-    Bone,
-    default_as_none,
-    require_stiffness_amount,
-)
+from app.document.rig.stiffness import default_as_none, require_stiffness_amount
 from app.errors import LissomError
 from app.texts import N_, _
 from engine.arrays import Floats
@@ -54,13 +50,17 @@ def clear_stiffness(layer: Layer) -> Layer:
 
 @layer_command(_("Add bone"))
 def add_bone(layer: Layer, ends: tuple[int, int], amount: float = DEFAULT_BONE_STIFFNESS) -> Layer:
-    """Add a bone between two handles; the straight bone must stay inside the drawing."""
-    bone = Bone(ends=ends, stiffness=amount)
-    names = [layer.handle(identity).name for identity in ends]
-    if any(other.is_between(ends) for other in layer.bones):
+    """Add a bone from a root to an end; the straight bone must stay inside the drawing."""
+    return with_bone(layer, Bone(ends=ends, stiffness=amount))
+
+
+def with_bone(layer: Layer, bone: Bone) -> Layer:
+    """Return the layer with a further bone, or raise `LissomError` or `EngineError`."""
+    if any(other.is_between(bone.ends) for other in layer.bones):
+        first, second = (layer.handle(identity).name for identity in bone.ends)
         raise LissomError(
             _("A bone from {first!r} to {second!r} already exists.").format(
-                first=names[0], second=names[1]
+                first=first, second=second
             )
         )
     bone_region(layer, bone, layer.domain.outline)
@@ -106,7 +106,9 @@ def mirror_stiffness(layer: Layer, pairs: SidePairs = PAIRS) -> Layer:
     for bone in layer.bones:
         first, second = (partners.get(end, end) for end in bone.ends)
         mirrored = replace(bone, ends=(first, second))
-        if not any(other.is_between(mirrored.ends) for other in bones) and _fits(layer, mirrored):
+        if not any(other.is_between(mirrored.ends) for other in bones) and _fits(
+            replace(layer, bones=tuple(bones)), mirrored
+        ):
             bones.append(mirrored)
     if tuple(bones) == layer.bones and _same(stiffness, layer.stiffness):
         return layer
@@ -115,8 +117,8 @@ def mirror_stiffness(layer: Layer, pairs: SidePairs = PAIRS) -> Layer:
 
 def _fits(layer: Layer, bone: Bone) -> bool:
     try:
-        bone_region(layer, bone, layer.domain.outline)
-    except EngineError:
+        with_bone(layer, bone)
+    except (EngineError, LissomError):
         return False
     return True
 

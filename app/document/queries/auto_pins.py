@@ -8,9 +8,9 @@ from app.baseline import Baseline
 from app.document.channels.easing import HOLD
 from app.document.keyframe import Pose
 from app.document.layer import Layer
-from app.document.queries.boundary_stiffness import stiffness_source
 from app.document.queries.clips import Clip
 from app.document.queries.key_segments import clip_segments
+from app.document.queries.material.boundary_stiffness import stiffness_source
 from app.document.queries.memo import memoized_on
 from app.document.queries.pose_tangents import adjacent_segments, pose_segments
 from app.document.settings import FrameRange
@@ -104,7 +104,7 @@ def _segments(
             layer.has_parent,
             stiffness_source(layer),
             tuple(_velocity_sources(clip, each) for each in around) if len(around) > 1 else (),
-            (layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b),
+            (layer.widest_bounds.k, layer.widest_bounds.sigma_a, layer.widest_bounds.sigma_b),
         )
         poses = tuple(dict.fromkeys(key.pose for key in keys))
         found.append(

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from app.document.keyframe import Pose
 from app.document.layer import Layer
-from app.document.queries.boundary_stiffness import uses_local_limits
+from app.document.queries.material.local_limits import uses_local_limits
 from app.document.queries.memo import memoized_on
 from app.texts import N_, _
 from engine.arrays import Complexes
@@ -128,13 +128,17 @@ def _least_target_error(domain: MeshedDomain) -> float:
 
 @memoized_on
 def measure_target_errors(layer: Layer, pose: Pose) -> TargetErrors:
-    """Return the handles of a layer that miss their targets, without sprung handles."""
+    """Return the handles of a layer that miss their targets, without sprung handles.
+
+    Joints of bones are left out: their targets are places of bones and not of the drawing.
+    """
     lags = {
         identity: lag
         for identity, lag in layer.target_errors(pose).items()
-        if identity not in layer.sprung_handles and misses_target(layer, lag)
+        if identity not in layer.sprung_handles | layer.bone_joints and misses_target(layer, lag)
     }
-    at_limits = any(use.is_all for use in DistortionRange.of(pose).uses(layer.bounds)) or (
+    # The proven range is that of the whole drawing, joints of bones included.
+    at_limits = any(use.is_all for use in DistortionRange.of(pose).uses(layer.widest_bounds)) or (
         bool(lags) and uses_local_limits(layer, pose, AT_LIMIT)
     )
     return TargetErrors(errors=lags, at_limits=at_limits)

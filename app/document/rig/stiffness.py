@@ -1,37 +1,17 @@
-"""Stiffness of a layer: painted values and bones."""
+"""Stiffness of a layer along its outline."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.document.checks import NOTHING, Unknown, require
+from app.document.checks import require
 from app.texts import N_
 from engine.arrays import Floats, freeze
 from engine.domain import MeshedDomain
 from engine.domain.material.transfer import copy_nearest_stiffness
 from engine.maps import SOFTEST, STIFFEST
 
-DEFAULT_BONE_STIFFNESS = 10.0  # default of a bone
 STIFFNESS_TOLERANCE = 1e-9  # a stiffness this close to 1 counts as 1
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Bone:
-    """A stiff or soft strip between two handles, without the joints at its ends."""
-
-    ends: tuple[int, int]  # handle ids
-    stiffness: float = DEFAULT_BONE_STIFFNESS  # from 1/30 to 100
-    is_shown: bool = True  # in the window; a hidden bone acts too
-    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
-
-    def __post_init__(self) -> None:
-        require(self.ends[0] != self.ends[1], N_("A bone must connect two different handles."))
-        require_stiffness_amount(self.stiffness)
-
-    def is_between(self, ends: Sequence[int]) -> bool:
-        """Return whether the bone joins these two handles, in either order."""
-        return set(ends) == set(self.ends)
 
 
 def require_stiffness_amount(amount: float) -> None:

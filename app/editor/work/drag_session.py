@@ -34,6 +34,8 @@ class DragStart:
         f, identities = layer.map_of(pose), [handle.id for handle in layer.handles]
         at = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
         places = dict(zip(identities, f(at).tolist(), strict=True))
+        # Joints are places of bones, which the drawing there may miss by some pixels.
+        places |= {i: pose.targets[i].position for i in layer.bone_joints & pose.targets.keys()}
         turns = dict(zip(identities, np.angle(f.derivatives(at)[0]).tolist(), strict=True))
         return cls.at(places, turns, pose.targets)
 

@@ -113,7 +113,9 @@ def compute_segments(
         segment_key(clip, number): CachedSegment(
             poses=segment_poses(clip, number),
             inbetweens=pins.inbetweens(number, sampler),
-            velocity_shares=sampler.velocity_shares(every[number], layer.bounds, layer.variant),
+            velocity_shares=sampler.velocity_shares(
+                every[number], layer.widest_bounds, layer.variant
+            ),
             sites=sampler.sites,
         )
         for number in wanted

@@ -59,7 +59,7 @@ class AutoPins:
 
     def frame(self, number: int, sampler: PoseSampler, time: float) -> Frame:
         """Return a single in-between, for a variant that makes single frames."""
-        segment, bounds = pose_segments(self.clip)[number], self.clip.layer.bounds
+        segment, bounds = pose_segments(self.clip)[number], self.clip.layer.widest_bounds
         pins = self._correction_at(number, time)
         return sampler.frame_of(segment, bounds, self._variant, time, pins)
 
@@ -73,7 +73,7 @@ class AutoPins:
         if known is not None:
             return known
         corrector, sampler = self.prepare()
-        pins, bounds = self._pins(number, segment, sampler), self.clip.layer.bounds
+        pins, bounds = self._pins(number, segment, sampler), self.clip.layer.widest_bounds
         interval = sampler.segment_of(pose_segments(self.clip)[number], bounds, self._variant)
         return solve_pins_at(time, self._variant, interval, corrector, pins, bounds)
 
@@ -86,12 +86,12 @@ class AutoPins:
         return self._known.known.pins_of(key, segment.poses, partial(self._solved, number, segment))
 
     def _base(self, number: int, sampler: PoseSampler) -> Inbetweens:
-        bounds = self.clip.layer.bounds
+        bounds = self.clip.layer.widest_bounds
         return sampler.inbetweens_of(pose_segments(self.clip)[number], bounds, self._variant)
 
     def _solved(self, number: int, segment: PinnedSegment) -> CorrectionSeries:
         corrector, sampler = self.prepare()
-        pins, bounds = self._pins(number, segment, sampler), self.clip.layer.bounds
+        pins, bounds = self._pins(number, segment, sampler), self.clip.layer.widest_bounds
         return solve_pins(self._own_base(number), corrector, pins, bounds)
 
     def _own_base(self, number: int) -> Inbetweens:

@@ -61,7 +61,13 @@ def have_same_base_frames(clip: Clip, other: Clip, *, values: bool = True) -> bo
         own = of.sliders if values else tuple(each.slider.name for each in of.sliders)
         return (
             *(layer.id, layer.domain, layer.handles, layer.keys, layer.cycles, layer.anchor),
-            *(layer.attachments, layer.has_auto_pins, layer.springs, layer.variant, layer.bounds),
+            *(
+                layer.attachments,
+                layer.has_auto_pins,
+                layer.springs,
+                layer.variant,
+                layer.widest_bounds,
+            ),
             *(stiffness_source(layer), layer.bones),
             *(of.frames, of.loop, of.fps, of.baseline, of.parents, own, slider_poses(of)),
         )
@@ -107,7 +113,7 @@ class FrameCorrector:
             self._corrector, own = pins.prepare()
         stiffness = self._corrector.boundary.stiffness
         self._of_what = (
-            *(self._corrector.points.tobytes(), stiffness.tobytes(), layer.bounds),
+            *(self._corrector.points.tobytes(), stiffness.tobytes(), layer.widest_bounds),
             *(layer.anchor, self._is_anchored, variant),
         )
         self._motion = KeyframeMotion(clip, variant, own, pins)
@@ -168,7 +174,7 @@ class FrameCorrector:
         self, frame: float, base: CorrectionBase, wanted: SecondaryTargets
     ) -> SecondaryCorrection:
         """Return the correction that brings the handles to their targets."""
-        targets, bounds = self._targets(base, wanted), self.clip.layer.bounds
+        targets, bounds = self._targets(base, wanted), self.clip.layer.widest_bounds
 
         def solve() -> SecondaryCorrection:
             inbetweens, time = self._motion.segment_at(frame)

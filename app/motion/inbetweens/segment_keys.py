@@ -21,7 +21,7 @@ def segment_key(clip: Clip, interval: int, variant: Variant | None = None) -> Se
     """Return the cache key of a segment's in-betweens."""
     segment, layer = pose_segments(clip)[interval], clip.layer
     # As numbers, which hash much faster than the dataclass.
-    bounds = (layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b)
+    bounds = (layer.widest_bounds.k, layer.widest_bounds.sigma_a, layer.widest_bounds.sigma_b)
     maps = [identity for key in segment.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
     joined = (
         (segment.start, segment.end, segment.apart, bounds) if segment.has_smooth_tangent else ()

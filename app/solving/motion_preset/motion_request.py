@@ -171,9 +171,4 @@ def with_limits(document: Document, identity: int, limits: Bounds | None) -> Doc
     own = document.layer(identity).bounds
     if limits is None:
         return document
-    wider = Bounds(
-        k=max(own.k, limits.k),
-        sigma_a=max(own.sigma_a, limits.sigma_a),
-        sigma_b=min(own.sigma_b, limits.sigma_b),
-    )
-    return shape_commands.set_limits(identity, wider)(document)
+    return shape_commands.set_limits(identity, own.joined(limits))(document)

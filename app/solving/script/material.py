@@ -1,7 +1,8 @@
-"""Stiffness in a pose script: painted regions, and bones."""
+"""Stiffness and bones in a pose script."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from app.document import Bone
 from app.errors import LissomError
@@ -35,7 +36,48 @@ def parse_material(
             parts.append(_part(entry, here))
         else:
             bones.append(_bone(entry, here, handles))
+    if len({bone.ends[1] for bone in bones}) < len(bones):
+        # Written before bones had a direction: two of them end at one handle.
+        bones = [replace(bone, is_directed=False) for bone in bones]
     return tuple(parts), tuple(bones)
+
+
+def parse_bones(content: object, where: str, handles: Sequence[str]) -> tuple[Bone, ...]:
+    """Return the bones of chains, each a list of handles from root to end."""
+    bones: dict[frozenset[int], Bone] = {}
+    for index, entry in enumerate(as_list(content, where)):
+        here = f"{where}[{index}]"
+        names = [as_text(name, here) for name in as_list(entry, here)]
+        if len(names) < 2:
+            raise LissomError(
+                _(
+                    "{where} must list at least two handles from root to end, as in "
+                    '["shoulder", "elbow", "hand"]'
+                ).format(where=here)
+            )
+        for name in names:
+            check_handle_name(name, handles, here)
+        ends = [list(handles).index(name) for name in names]
+        for number, (first, second) in enumerate(pairwise(ends)):
+            _check_ends(here, names[number], names[number + 1])
+            bone = Bone(ends=(first, second))
+            if bones.setdefault(frozenset(bone.ends), bone) is not bone:
+                raise LissomError(
+                    _(
+                        "{where} has the bone from {first!r} to {second!r}, which another chain "
+                        "has too; start the chain at {second!r}"
+                    ).format(where=here, first=names[number], second=names[number + 1])
+                )
+    return tuple(bones.values())
+
+
+def _check_ends(where: str, first: str, second: str) -> None:
+    if first == second:
+        raise LissomError(
+            _("{where} connects {name!r} to itself; name two different handles").format(
+                where=where, name=first
+            )
+        )
 
 
 def _part(content: object, where: str) -> StiffRegion:
@@ -54,12 +96,7 @@ def _bone(content: object, where: str, handles: Sequence[str]) -> Bone:
     names = [as_text(bone[end], f"{where}.{end}") for end in ("from", "to")]
     for name in names:
         check_handle_name(name, handles, where)
-    if names[0] == names[1]:
-        raise LissomError(
-            _("{where} connects {name!r} to itself; name two different handles").format(
-                where=where, name=names[0]
-            )
-        )
+    _check_ends(where, names[0], names[1])
     first, second = map(list(handles).index, names)
     return Bone(ends=(first, second), stiffness=_amount(bone["amount"], where))
 

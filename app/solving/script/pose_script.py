@@ -26,7 +26,7 @@ from app.solving.script.fields import (
     check_frame_order,
     read_fields,
 )
-from app.solving.script.keys import PoseKey, parse_key
+from app.solving.script.keys import PoseKey, check_limbs, parse_key
 from app.solving.script.layers import (
     ScriptAttachment,
     ScriptSwitchGroup,
@@ -35,7 +35,7 @@ from app.solving.script.layers import (
     parse_canvas,
     parse_switch_groups,
 )
-from app.solving.script.material import StiffRegion, parse_material
+from app.solving.script.material import StiffRegion, parse_bones, parse_material
 from app.solving.script.sliders import ScriptSlider, parse_sliders
 from app.solving.script.sounds import ScriptSound, parse_sounds
 from app.solving.script.tracks import check_loop_periods, parse_cycles, parse_springs, parse_tracks
@@ -60,7 +60,7 @@ MOVING_FIELDS = (
     *("keys", "tracks", "springs", "sliders", "cycles"),
     *("movement", "opacity", "channels"),
 )
-OWN_FIELDS = ("anchor", "handles", *MOVING_FIELDS, "stiff")
+OWN_FIELDS = ("anchor", "handles", "bones", *MOVING_FIELDS, "stiff")
 STAGE_FIELDS = ("layers", "choices")
 LAYER_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
@@ -218,10 +218,14 @@ def _layer(script: JsonObject, where: str, usual: Mapping[str, Any], *, loop: bo
     own["cycles"] = parse_cycles(
         script.get("cycles", []), f"{where}cycles", [key.frame for key in parsed]
     )
-    own["parts"], own["bones"] = parse_material(
-        script.get("stiff", []), f"{where}stiff", tuple(handles)
-    )
+    bones = parse_bones(script.get("bones", []), f"{where}bones", tuple(handles))
+    own["parts"], strips = parse_material(script.get("stiff", []), f"{where}stiff", tuple(handles))
+    own["bones"] = (*bones, *strips)
     own["sliders"] = parse_sliders(script.get("sliders", []), f"{where}sliders", handles)
+    posed = [(f"{where}keys[{index}]", key) for index, key in enumerate(parsed)]
+    posed += [(f"{where}sliders", key) for slider in own["sliders"] for key in slider.poses]
+    for place, key in posed:
+        check_limbs(key, place, own["bones"], tuple(handles))
     return LayerScript(handles=handles, keys=parsed, **own)
 
 

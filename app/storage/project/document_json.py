@@ -11,6 +11,7 @@ from typing import Any, Literal
 from app.cut_out import CutLine, CutOut, Stroke
 from app.document import (
     CAMERA,
+    FOLDING_JOINTS,
     FRAME_NAMES,
     PAIRS,
     SWITCH,
@@ -41,6 +42,7 @@ from app.document import (
     TrackKey,
     UnreadMotion,
     require_motions,
+    with_directed_bones,
 )
 from app.errors import EMPTY_IMPORT_LOG, EXPECTED_ERRORS, ImportLog, LissomError
 from app.export_formats import FormatOptions, FormatSettings
@@ -143,6 +145,7 @@ TARGETS = list_of(
         Field("handle", WHOLE, lambda pair: pair[0]),
         Field("position", POINT, lambda pair: pair[1].position),
         Field("rotation", optional(NUMBER), lambda pair: pair[1].rotation),
+        Field("side", optional(WHOLE), lambda pair: pair[1].side, default=None),
         unknown=lambda pair: pair[1].unknown,
     )
 )
@@ -227,6 +230,7 @@ BONE = record(
     Field("ends", pair(WHOLE, WHOLE, N_("two handles"))),
     Field("stiffness", NUMBER, legacy_name="amount"),
     Field("is_shown", FLAG, default=True),
+    Field("is_directed", FLAG, legacy_default=False),
 )
 APPLIED_MOTION = record(
     AppliedMotion,
@@ -463,7 +467,7 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
     if (same.suffix, same.size) == (picture.suffix, picture.size):
         picture = same
     domain = members.domain(parted=made.pop("parted"))
-    proven = _unproven if archive.is_written else _prover(domain, fields["bounds"])
+    proven = _unproven if archive.is_written else _prover(domain, _widest_bounds(fields))
 
     def pose(kind: Literal["keys", "poses"], index: int, given: tuple[Any, ...]) -> Pose:
         targets, f = dict(given), members.map(domain, kind, index)
@@ -480,7 +484,7 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
         key["pose"] = pose("keys", index, key.pop("targets"))
     for index, kept in enumerate(fields["library"]):
         kept["pose"] = pose("poses", index, kept.pop("targets"))
-    return Layer(
+    layer = Layer(
         **fields
         | motions
         | {
@@ -496,6 +500,14 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
             "library": tuple(LibraryPose(**kept) for kept in fields["library"]),
         }
     )
+    return with_directed_bones(layer)
+
+
+def _widest_bounds(fields: Mapping[str, Any]) -> Bounds:
+    """Return the limits that poses of a layer with these fields may have anywhere."""
+    bounds: Bounds = fields["bounds"]
+    has_limbs = any(bone.is_limb for bone in fields["bones"])
+    return bounds.joined(FOLDING_JOINTS) if has_limbs else bounds
 
 
 def _prover(domain: Domain, bounds: Bounds) -> Callable[[HarmonicMap], Certificate]:

@@ -20,12 +20,15 @@ class Evaluation:
         f_z and conj(f_z̄) at the samples.
     positions, fz : complex128, shape (h,)
         The map and f_z at the handles.
+    shaft_positions : complex128, shape (t,)
+        The map at the points of the armature's shafts.
     """
 
     f: Complexes
     g: Complexes
     positions: Complexes
     fz: Complexes
+    shaft_positions: Complexes
 
     @cached_property
     def a(self) -> Floats:
@@ -53,6 +56,7 @@ class Evaluation:
             g=factor * self.g,
             positions=factor * self.positions,
             fz=factor * self.fz,
+            shaft_positions=factor * self.shaft_positions,
         )
 
     def moved(self, motion: RigidMotion) -> "Evaluation":
@@ -62,6 +66,7 @@ class Evaluation:
             g=np.conj(motion.factor) * self.g,
             positions=motion.apply(self.positions),
             fz=motion.factor * self.fz,
+            shaft_positions=motion.apply(self.shaft_positions),
         )
 
     def advanced(self, length: float, direction: "Evaluation") -> "Evaluation":
@@ -71,4 +76,5 @@ class Evaluation:
             g=self.g + length * direction.g,
             positions=self.positions + length * direction.positions,
             fz=self.fz + length * direction.fz,
+            shaft_positions=self.shaft_positions + length * direction.shaft_positions,
         )

@@ -76,7 +76,8 @@ def single_hessian(
     than two handles leave the shape free to rotate or move.
     """
     quadrature = _quadrature(objective, radial)
-    if quadrature.hard or objective.boundary.holes or len(objective.targets.positions) < 2:
+    is_held = len(objective.targets.positions) > 1 or objective.handles.armature is not None
+    if quadrature.hard or objective.boundary.holes or not is_held:
         return None
     hessian = _held_hessian(objective, jet).astype(np.float32)
     further = [*_rotation_roots(objective, jet), _damping_root(objective, jet, quadrature)]
@@ -98,13 +99,16 @@ def hessian_product(
     by_f = radial.aa * f.real + radial.ab * g.real - 1j * around_a * f.imag
     by_g = radial.ab * f.real + radial.bb * g.real - 1j * radial.around_b * g.imag
     pull = 2.0 * objective.handles.stiffness * objective.target_error_change(jet, change.positions)
-    if objective.targets.distance_constraints is not None:
-        pull += objective.targets.distance_constraints.hessian_product(
-            jet.positions, change.positions
-        )
     rows, coordinates = objective.boundary.basis_derivatives, objective.handles.basis_coordinates
     by_phi = (by_f * frame_f) @ rows + pull.conj() @ coordinates
     by_psi = (by_g * frame_g) @ rows + pull @ coordinates
+    armature = objective.handles.armature
+    if armature is not None:
+        pull = armature.hessian_product(
+            jet.shaft_positions, objective.targets.aims, change.shaft_positions
+        )
+        by_phi += pull.conj() @ armature.basis_coordinates
+        by_psi += pull @ armature.basis_coordinates
     for frame in objective.rotation_frames(jet):
         along = (frame * change.fz[objective.rotation_constraints]).real
         by_phi += (along * frame) @ objective.rotation_rows
@@ -240,12 +244,13 @@ def _quadrature(objective: Objective, radial: RadialDerivatives) -> "_Quadrature
 
 
 def _held_hessian(objective: Objective, jet: Evaluation) -> Floats:
-    """Return the Hessian of the energy of the handles' positions, (u, u)."""
+    """Return the Hessian of the energy of the handles' positions and the armature, (u, u)."""
     held = objective.handles.hessian
-    given, linked = objective.pull_rows(jet), objective.distance_constraint_rows(jet)
-    if len(given):
-        held = held - given.T @ given
-    return held + linked.T @ linked if len(linked) else held
+    added, removed = objective.armature_rows(jet)
+    removed = np.concatenate([objective.pull_rows(jet), removed])
+    if len(removed):
+        held = held - removed.T @ removed
+    return held + added.T @ added if len(added) else held
 
 
 def _damping_root(objective: Objective, jet: Evaluation, calm: "_Quadrature") -> Complexes:

@@ -64,6 +64,7 @@ class Objective:
             g=rows @ of_psi,
             positions=coordinates @ of_phi + (coordinates @ of_psi).conj(),
             fz=self.handles.basis_derivatives @ of_phi,
+            shaft_positions=self._at_shafts(of_phi, of_psi, in_basis=True),
         )
 
     def evaluate(self, phi: Complexes, psi: Complexes) -> Evaluation:
@@ -75,7 +76,17 @@ class Objective:
             g=rows @ span.without_constant(psi),
             positions=coordinates @ phi + (coordinates @ psi).conj(),
             fz=self.handles.derivatives @ phi_alone,
+            shaft_positions=self._at_shafts(phi, psi, in_basis=False),
         )
+
+    def _at_shafts(self, phi: Complexes, psi: Complexes, *, in_basis: bool) -> Complexes:
+        """Return the positions (t,) of the shafts' points for coefficients of φ and ψ."""
+        armature = self.handles.armature
+        if armature is None:
+            return np.empty(0, np.complex128)
+        coordinates = armature.basis_coordinates if in_basis else armature.coordinates
+        positions: Complexes = coordinates @ phi + (coordinates @ psi).conj()
+        return positions
 
     def value(self, jet: Evaluation) -> float:
         """Return the objective, ∞ where the map folds or leaves the bounds."""
@@ -94,15 +105,18 @@ class Objective:
             if self.targets.pulls is not None:
                 lacking = jet.positions - self.targets.positions
                 value += self.targets.pulls.slack_energy(self.targets.pulls.slack(lacking))
-            if self.targets.distance_constraints is not None:
-                value += self.targets.distance_constraints.energy(jet.positions)
+            if self.handles.armature is not None:
+                value += self.handles.armature.energy(jet.shaft_positions, self.targets.aims)
             if self.rotation_constraints.any():
                 value += self.rotation_stiffness @ self.rotation_errors(jet) ** 2
         return np.inf if np.isnan(value) else float(value)
 
     def target_error(self, jet: Evaluation) -> float:
-        """Return the root mean square distance of the handles from their targets, over L."""
-        errors = jet.positions - self.targets.positions
+        """Return the root mean square distance of handles and aims from their targets, over L."""
+        errors, aims = jet.positions - self.targets.positions, self.targets.aims
+        if self.handles.armature is not None and aims is not None:
+            own = self.handles.armature.aim_errors(jet.shaft_positions, aims)
+            errors = np.concatenate([errors, own])
         squares = np.vdot(errors, errors).real / max(len(errors), 1)
         return sqrt(squares) / self.boundary.size
 
@@ -123,10 +137,13 @@ class Objective:
     def gradient(self, jet: Evaluation, radial: RadialDerivatives) -> Floats:
         """Return the gradient (u,)."""
         pull = 2.0 * self.handles.stiffness * self.targets.target_errors(jet.positions)
-        if self.targets.distance_constraints is not None:
-            pull += self.targets.distance_constraints.gradient(jet.positions)
         by_phi = pull.conj() @ self.handles.basis_coordinates
         by_psi = pull @ self.handles.basis_coordinates
+        armature = self.handles.armature
+        if armature is not None:
+            pull = armature.gradient(jet.shaft_positions, self.targets.aims)
+            by_phi += pull.conj() @ armature.basis_coordinates
+            by_psi += pull @ armature.basis_coordinates
         if self.rotation_constraints.any():
             # d arg F = Im(dF / F) = Re(−i dF / F).
             angle = 2.0 * self.rotation_stiffness * self.rotation_errors(jet)
@@ -161,20 +178,12 @@ class Objective:
                 rows.append(self.by_unknowns(pull.conj() * means, pull * means))
         return np.array(rows).reshape(-1, len(self.handles.hessian))
 
-    def distance_constraint_rows(self, jet: Evaluation) -> Floats:
-        """Return the rows (s, u) whose Gram matrix the constraints add to the handles' Hessian."""
-        links = self.targets.distance_constraints
-        if links is None:
-            return np.empty((0, len(self.handles.hessian)))
-        coordinates = self.handles.basis_coordinates
-        directions, along, across = links.stiffness_by_direction(jet.positions)
-        between = coordinates[links.ends[0]] - coordinates[links.ends[1]]
-        rows = []
-        for turn, stiffness in ((1.0, along), (1.0j, across)):
-            for link in np.flatnonzero(stiffness):
-                pull = turn * directions[link] * np.sqrt(stiffness[link])
-                rows.append(self.by_unknowns(pull.conj() * between[link], pull * between[link]))
-        return np.array(rows).reshape(-1, len(self.handles.hessian))
+    def armature_rows(self, jet: Evaluation) -> tuple[Floats, Floats]:
+        """Return the rows (s, u) whose Gram matrices the armature adds and subtracts."""
+        if self.handles.armature is None:
+            none = np.empty((0, len(self.handles.hessian)))
+            return none, none
+        return self.handles.armature.rows(self.boundary, jet.shaft_positions, self.targets.aims)
 
     def sampled_gradient(
         self, jet: Evaluation, by_a: Floats, b_per_b: Floats, samples: Indices | slice = slice(None)

@@ -48,17 +48,11 @@ def limb_weights(
     EngineError
         If the bone has no length, leaves the drawing or crosses a hole.
     """
-    as_points([start, end], "The ends of a bone")
+    area = require_bone(loops, start, end)
     length = abs(end - start)
-    area = shapely_region(loops[0], loops[1:]).buffer(ON_OUTLINE * diameter(loops[0]))
-    if not length > 0:
-        raise EngineError("A bone must connect two different points.")
-    bone = shapely.LineString([(start.real, start.imag), (end.real, end.imag)])
-    if not area.covers(bone):
-        raise EngineError(BONE_STAYS)
     local = (points - start) * np.conj(end - start) / length
     along, across = local.real / length, local.imag
-    widths = _widths(loops, start, end)
+    widths = measure_half_widths(loops, start, end)
     joint = min(JOINT * float(widths.mean()), LONGEST_JOINT * length) / length
     shares = _smooth(np.minimum(along, 1 - along) / joint)
     width = np.where(across > 0, widths[0], widths[1])
@@ -69,20 +63,46 @@ def limb_weights(
     return shares
 
 
-def _widths(loops: Sequence[Complexes], start: complex, end: complex) -> Floats:
-    """Return the width of the limb to the left and to the right of the bone."""
+def require_bone(loops: Sequence[Complexes], start: complex, end: complex) -> shapely.Geometry:
+    """Return the drawing with a little room around it, or raise an `EngineError`.
+
+    A bone has a length, and it stays in the drawing without crossing a hole.
+    """
+    as_points([start, end], "The ends of a bone")
+    area = shapely_region(loops[0], loops[1:]).buffer(ON_OUTLINE * diameter(loops[0]))
+    if not abs(end - start) > 0:
+        raise EngineError("A bone must connect two different points.")
+    bone = shapely.LineString([(start.real, start.imag), (end.real, end.imag)])
+    if not area.covers(bone):
+        raise EngineError(BONE_STAYS)
+    return area
+
+
+def measure_half_widths(loops: Sequence[Complexes], start: complex, end: complex) -> Floats:
+    """Return the half width of the limb to the left and to the right of a bone, float64 (2,)."""
+    shares = (np.arange(PLACES) + 0.5) / PLACES
+    distances = measure_distances(loops, start, end, shares)
+    found: Floats = np.nanquantile(distances, USUAL, axis=1)
+    return np.maximum(found, ON_OUTLINE * diameter(loops[0]))
+
+
+def measure_distances(
+    loops: Sequence[Complexes], start: complex, end: complex, shares: Floats
+) -> Floats:
+    """Return how far the outline is from places along a bone, float64 (2, s): left and right.
+
+    NaN where there is none.
+    """
     outlines = shapely.MultiLineString([shapely.LinearRing(as_xy(loop)) for loop in loops])
     shapely.prepare(outlines)
-    feet = np.array(start + (np.arange(PLACES) + 0.5) / PLACES * (end - start), complex)
-    size = diameter(loops[0])
-    aside = 1j * (end - start) / abs(end - start) * size
+    feet = np.asarray(start + shares * (end - start), np.complex128)
+    aside = 1j * (end - start) / abs(end - start) * diameter(loops[0])
     found = []
     for direction in (aside, -aside):
         rays = np.column_stack([feet, feet + direction])
         hits = shapely.intersection(shapely.linestrings(rays.real, rays.imag), outlines)
-        distances = shapely.distance(shapely.points(as_xy(feet)), hits)
-        found.append(np.nanquantile(distances, USUAL))
-    return np.maximum(found, ON_OUTLINE * size)
+        found.append(shapely.distance(shapely.points(as_xy(feet)), hits))
+    return np.array(found)
 
 
 def _smooth(depth: Floats) -> Floats:

@@ -10,8 +10,8 @@ from refusals import refusal
 
 from app.cli.main import main
 from engine.deform.deformer import UNCERTIFIED_START
+from engine.deform.forces.pulls import FORCE_NOT_POSITIVE
 from engine.deform.handles import MOST_CAGE, TARGET_COUNT
-from engine.deform.pulls import FORCE_NOT_POSITIVE
 from engine.geometry.polygon import CAGE_ORDER, OUTSIDE_OUTLINE, is_simple
 from engine.maps.bounds import IMPOSSIBLE_BOUND
 from engine.maps.harmonic_map import COEFFICIENT_COUNT, HarmonicMap

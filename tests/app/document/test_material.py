@@ -177,11 +177,12 @@ def test_material_stays_in_its_place_on_another_domain():
 
 def test_material_is_mirrored_as_handles_are():
     document = stiffness_commands.paint_stiffness(0, [RIGHT], radius=60, amount=30.0)(boned())
-    document = stiffness_commands.add_bone(0, (0, 2), 40.0)(document)
+    document = stiffness_commands.remove_bone(0, (0, 1))(document)
+    document = stiffness_commands.add_bone(0, (2, 0), 40.0)(document)
     mirrored = stiffness_commands.mirror_stiffness(0)(document)
     (layer,) = mirrored.layers
-    assert [bone.ends for bone in layer.bones] == [(0, 1), (0, 2), (1, 2)]
-    assert layer.bones[2].stiffness == 40
+    assert [bone.ends for bone in layer.bones] == [(2, 0), (2, 1)]
+    assert layer.bones[1].stiffness == 40
     outline, stiffness = layer.domain.outline, layer.stiffness
     opposite = np.abs(outline[:, None] - (2 * layer.axis - outline.conj())).argmin(axis=0)
     assert_allclose(stiffness, stiffness[opposite], rtol=1e-9)

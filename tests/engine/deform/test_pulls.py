@@ -10,9 +10,9 @@ from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import BoundedPull, Deformer, Handles, Objective, Status, projected_hessian
+from engine.deform.forces.pulls import FORCE_NOT_POSITIVE, PULL_HANDLES
 from engine.deform.interior_point.search import OPTIMAL
 from engine.deform.model.hessian import hessian_product
-from engine.deform.pulls import FORCE_NOT_POSITIVE, PULL_HANDLES
 from engine.errors import EngineError
 from engine.maps import Boundary, Bounds
 
@@ -154,7 +154,7 @@ def test_what_a_hand_lets_go_stays_where_it_is_and_is_found_again():
     deformer = star(BOUNDS)
     handle_targets, state = pulled_out()
     places, shape = deformer.positions(state), state.map(BOUNDARY.outline)
-    left = handle_targets.released(places, deformer.handles.stiffness)
+    left = handle_targets.released(places)
     assert left.pulls is None
     assert_array_equal(left.positions[[0, 2, 3, 4, 5]], STAR_POINTS[[0, 2, 3, 4, 5]])
     beyond = left.positions[1] - places[1]
@@ -167,7 +167,7 @@ def test_what_a_hand_lets_go_stays_where_it_is_and_is_found_again():
         again = deformer.step(again, left)
     assert pixels(again.map(BOUNDARY.outline), shape) < 3
     # Targets that nothing bounds stay as they are.
-    assert left.released(places, deformer.handles.stiffness) is left
+    assert left.released(places) is left
 
 
 def within_reach():
@@ -184,7 +184,7 @@ def test_a_pose_at_rest_stays_when_hands_let_go(is_reached):
     if is_reached:
         handle_targets = within_reach()
         state = settled(deformer, handle_targets)
-    left = handle_targets.released(deformer.positions(state), deformer.handles.stiffness)
+    left = handle_targets.released(deformer.positions(state))
     released = deformer.release(state, left)
     assert deformer.step(released, left) is released
     assert released.map is state.map
@@ -204,7 +204,7 @@ def test_a_pose_at_rest_stays_when_hands_let_go(is_reached):
 def test_a_pose_on_its_way_goes_on_when_hands_let_go():
     deformer, handle_targets = shape(), within_reach()
     moving = deformer.step(deformer.start(), handle_targets)
-    left = handle_targets.released(deformer.positions(moving), deformer.handles.stiffness)
+    left = handle_targets.released(deformer.positions(moving))
     going = deformer.release(moving, left)
     assert going.status is Status.MOVING
     assert settled(deformer, left, going).map is not moving.map
@@ -263,7 +263,7 @@ def test_handles_that_one_hand_pulls_keep_their_formation_and_pull_as_one():
         < 5
         < pixels(places_of_two[1] - places_of_two[2], asked)
     )
-    left = handle_targets.released(places, deformer.handles.stiffness)
+    left = handle_targets.released(places)
     assert_allclose(left.positions[1] - left.positions[2], asked, rtol=1e-12)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.document import Bone, bone_region, brushed_stiffness, stiffness_commands
+from app.document import Bone, bone_region, brushed_stiffness, direct_bone, stiffness_commands
 from app.editor.action import do
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import ActionSpec, named_action, unless
@@ -130,7 +130,7 @@ def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
 def add_bone_between_selected(session: Session, project: Project) -> None:
     if len(project.selection.handles) == 2:
         first, second = sorted(project.selection.handles)
-        add_bone(session, (first, second))
+        add_bone(session, direct_bone(project.layer, (first, second)))
 
 
 def bone_disabled_reason(project: Project, ends: tuple[int, int]) -> str | None:

@@ -23,7 +23,7 @@ from app.document.layers.groups import Group
 from app.document.queries.auto_pins import pinned_segments
 from app.document.queries.clips import UNMOVING, UNMOVING_OF_HANDLES, clip_of, motion_source
 from app.document.rig.applied_motion import UnreadMotion
-from app.document.rig.stiffness import Bone
+from app.document.rig.chains import Bone
 from app.motion.extents.extent import extent_key
 from engine.maps.bounds import Bounds
 

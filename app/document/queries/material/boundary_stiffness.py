@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.queries.memo import memoized_on
-from app.document.rig.stiffness import Bone, combined_stiffness, default_as_none
+from app.document.rig.chains import Bone
+from app.document.rig.stiffness import combined_stiffness, default_as_none
 from engine.arrays import Complexes, Floats, as_points
 from engine.domain.material.brush import brush_weights
 from engine.domain.material.limb import limb_weights
@@ -50,25 +50,6 @@ def stiffness_source(layer: Layer) -> tuple[object, ...]:
         (bone.stiffness, *(layer.handle(end).position for end in bone.ends)) for bone in layer.bones
     ]
     return painted, tuple(bones)
-
-
-def uses_local_limits(layer: Layer, pose: Pose, share: float) -> bool:
-    """Return whether a pose uses more than a share of the tighter limits at stiff points."""
-    points, stiffness = stiff_outline(layer)
-    is_stiff = stiffness > 1.0
-    if not is_stiff.any():
-        return False
-    f, g = layer.map_of(pose).derivatives(points[is_stiff])
-    a, b = np.abs(f), np.abs(g)
-    limits = layer.bounds.scaled_by(stiffness[is_stiff])
-    # A folded map counts too: its logarithms are infinite or NaN.
-    with np.errstate(all="ignore"):
-        spent = [
-            b / a / limits.k,
-            np.log(a + b) / np.log(limits.sigma_a),
-            np.log(a - b) / np.log(limits.sigma_b),
-        ]
-    return not bool(np.max(spent) <= share)
 
 
 def _stiffness_at(layer: Layer, points: Sequence[Complexes]) -> Floats:

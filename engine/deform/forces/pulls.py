@@ -1,13 +1,10 @@
-"""Bounded pulls on handles, and distance constraints between handles.
+"""Bounded pulls on handles.
 
 A handle is held by λ |e|², e its distance from its target. This force has no limit: a target far
 beyond reach would move all other handles. A bounded pull has at most the force F. With ē the mean
 error of its handles, Λ the sum of their λ and e₀ = F / (2 Λ), the part Λ |ē|² of their energy
 becomes 2 Λ e₀ |ē| − Λ e₀² beyond e₀ (Huber 1964). This is the minimum of Λ |ē − s|² + 2 Λ e₀ |s|
 over all s: the pull has the slack s, and its handles keep their formation.
-
-A distance constraint costs κ (r − c)² where the distance r of two handles leaves its range, whose
-nearer end is c. A pull beyond reach straightens the chain and stops.
 """
 
 from collections.abc import Collection, Sequence
@@ -15,20 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Indices, readonly
+from engine.arrays import Complexes, Floats, readonly
 from engine.errors import EngineError
 
 # Largest force of a pull, per L. An arm needs 1 to 2 to straighten to its limits. Measured on 18
 # pulls within reach: none is lost with 10, three are with 5.
 MAX_PULL_FORCE = 10.0
 FORCE_NOT_POSITIVE = "The force of a pull must be positive, not {pull:g}."
-CONSTRAINT_ENDS = (
-    "A distance cannot be kept between handles {first} and {second}; name two different handles "
-    "that exist."
-)
-CONSTRAINT_LENGTHS = (
-    "The distance between two handles cannot be limited to {shortest:g} to {longest:g}."
-)
 PULL_HANDLES = "A pull names handles {handles}, but there are only {count} handles."
 
 
@@ -133,90 +123,3 @@ class BoundedPulls(NamedTuple):
 
     def slack_energy(self, given: Complexes) -> float:
         return float((2.0 * self.stiffness * self.huber_thresholds) @ np.abs(given))
-
-
-class DistanceConstraint(NamedTuple):
-    """Two handles, by their numbers, and the allowed range of their distance."""
-
-    first: int
-    second: int
-    shortest: float
-    longest: float
-
-
-class DistanceConstraints(NamedTuple):
-    """Several distance constraints.
-
-    Parameters
-    ----------
-    ends : intp, shape (2, l)
-        The two handles of each constraint.
-    stiffness : float64, shape (l,)
-        κ of each.
-    """
-
-    ends: Indices
-    shortest: Floats
-    longest: Floats
-    stiffness: Floats
-
-    @classmethod
-    def of(
-        cls, links: Sequence[DistanceConstraint], stiffness: Floats
-    ) -> "DistanceConstraints | None":
-        """Prepare constraints between handles of this stiffness (h,).
-
-        Raises
-        ------
-        EngineError
-            If a constraint names a handle that does not exist, or has no range of distances.
-        """
-        if not links:
-            return None
-        for first, second, shortest, longest in links:
-            if first == second or not all(end in range(len(stiffness)) for end in (first, second)):
-                raise EngineError(CONSTRAINT_ENDS, first=first, second=second)
-            if not 0 <= shortest <= longest:
-                raise EngineError(CONSTRAINT_LENGTHS, shortest=shortest, longest=longest)
-        ends = np.array([(link.first, link.second) for link in links], np.intp).T
-        return cls(
-            ends=readonly(ends),
-            shortest=readonly(np.array([link.shortest for link in links])),
-            longest=readonly(np.array([link.longest for link in links])),
-            stiffness=readonly(stiffness[ends].max(axis=0)),
-        )
-
-    def _measure(self, positions: Complexes) -> tuple[Complexes, Floats, Floats]:
-        """Return direction, length, and length beyond the range of each constraint (l,)."""
-        between = positions[self.ends[0]] - positions[self.ends[1]]
-        lengths = np.maximum(np.abs(between), np.finfo(np.float64).tiny)
-        beyond = lengths - np.clip(lengths, self.shortest, self.longest)
-        return between / lengths, lengths, beyond
-
-    def energy(self, positions: Complexes) -> float:
-        """Return the energy of the constraints with the handles (h,) at these positions."""
-        return float(self.stiffness @ self._measure(positions)[2] ** 2)
-
-    def gradient(self, positions: Complexes) -> Complexes:
-        """Return the gradient of the energy (h,)."""
-        directions, _, beyond = self._measure(positions)
-        return self._at_handles(2.0 * self.stiffness * beyond * directions, len(positions))
-
-    def hessian_product(self, positions: Complexes, changes: Complexes) -> Complexes:
-        """Return the product (h,) of the energy's projected Hessian with changes of positions."""
-        directions, along, across = self.stiffness_by_direction(positions)
-        between = directions.conj() * (changes[self.ends[0]] - changes[self.ends[1]])
-        given = directions * (along * between.real + 1j * across * between.imag)
-        return self._at_handles(given, len(positions))
-
-    def stiffness_by_direction(self, positions: Complexes) -> tuple[Complexes, Floats, Floats]:
-        """Return each constraint's direction, and its stiffness along and across it, (l,)."""
-        directions, lengths, beyond = self._measure(positions)
-        twice = 2.0 * self.stiffness
-        return directions, twice * (beyond != 0), twice * np.maximum(beyond / lengths, 0.0)
-
-    def _at_handles(self, of_links: Complexes, count: int) -> Complexes:
-        at = np.zeros(count, np.complex128)
-        np.add.at(at, self.ends[0], of_links)
-        np.subtract.at(at, self.ends[1], of_links)
-        return at

@@ -1,0 +1,170 @@
+"""The rigid parts of a drawing with bones: points on the axis of each bone, and of the body.
+
+A bone's shaft lies where the drawing is a limb, narrower than the bone is long, and keeps clear of
+the joints, which bend. The body is what lies on the root's side of a cut across each limb.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from engine.arrays import Complexes, Floats, readonly
+from engine.domain.material.limb import measure_distances, measure_half_widths, require_bone
+from engine.geometry import as_xy, shapely_region
+
+POINTS = 3  # on the axis of a bone
+BODY_POINTS = 40
+# A shaft keeps clear of a joint by this many half widths, and by at most this part of the bone.
+CLEAR, MOST_CLEAR = 0.9, 0.4
+# The drawing is a limb where it is narrower than this part of the bone's length.
+NARROW = 0.95
+# Half widths count as at most this part of the length: a trunk is no limb.
+WIDEST = 0.35
+BEYOND_JOINT = 2.5  # half widths; one less is fully part of the joint
+SHORTEST_SHAFT = 0.15  # part of the bone's length
+STATIONS = 49  # places along a bone at which the drawing's width is measured
+FEWEST_STATIONS = 5
+INSET = 0.02  # part of the length without stations at each end
+
+
+class LimbShape(NamedTuple):
+    """The drawing around a bone.
+
+    `half_widths` are those to the left and to the right, in pixels. `limb_range` says from where to
+    where the bone lies in a limb, as parts of its length.
+    """
+
+    half_widths: Floats
+    limb_range: tuple[float, float]
+    stations: Floats
+
+    @property
+    def half_width(self) -> float:
+        return float(self.half_widths.mean())
+
+
+def measure_limb(loops: Sequence[Complexes], start: complex, end: complex) -> LimbShape:
+    """Measure the drawing around a bone.
+
+    Raises
+    ------
+    EngineError
+        If the bone has no length, leaves the drawing or crosses a hole.
+    """
+    require_bone(loops, start, end)
+    length = abs(end - start)
+    widths = np.minimum(measure_half_widths(loops, start, end), WIDEST * length)
+    shares = np.linspace(INSET, 1 - INSET, STATIONS)
+    left, right = measure_distances(loops, start, end, shares)
+    inside = shares[left + right < NARROW * length]
+    found = (float(inside[0]), float(inside[-1])) if len(inside) >= FEWEST_STATIONS else (0.4, 0.6)
+    # Stations in the limb come first: a cut across the trunk parts more than the limb.
+    return LimbShape(widths, found, np.concatenate([inside, shares]))
+
+
+def shaft_points(limb: LimbShape, start: complex, end: complex, *, is_last: bool) -> Complexes:
+    """Return the points of a bone's shaft; the last bone of a chain has no joint at its end."""
+    length = abs(end - start)
+    clear = min(CLEAR * limb.half_width / length, MOST_CLEAR)
+    low = max(clear, limb.limb_range[0])
+    high = 1.0 if is_last else min(1 - clear, limb.limb_range[1])
+    low = min(low, high - SHORTEST_SHAFT)
+    points = start + np.linspace(low, high, POINTS) * (end - start)
+    return readonly(np.asarray(points, np.complex128))
+
+
+class LimbCut(NamedTuple):
+    """A limb that is no part of the body: its first bone, and the end of its last bone."""
+
+    root: complex
+    joint: complex
+    end: complex
+    shape: LimbShape
+
+
+def body_points(
+    loops: Sequence[Complexes], candidates: Complexes, limbs: Sequence[LimbCut]
+) -> Complexes:
+    """Return points of the outline (≤ `BODY_POINTS`) that belong to no limb, far from each other.
+
+    Parameters
+    ----------
+    candidates : complex128
+        Points on the outline.
+    limbs : sequence of LimbCut
+        A limb that no cut separates from its root gets all that is beside its first bone.
+    """
+    whole, places = shapely_region(loops[0], loops[1:]), shapely.points(as_xy(candidates))
+    is_body = np.ones(len(candidates), dtype=np.bool_)
+    for limb in limbs:
+        way = limb.joint - limb.root
+        along = ((candidates - limb.root) * np.conj(way)).real / abs(way) ** 2
+        away = np.abs(candidates - limb.root - np.clip(along, 0, 1) * way)
+        is_body &= away > limb.shape.half_widths.max()
+        parts = _cut_limb(loops, whole, limb)
+        if parts is not None:
+            own = _nearest_part(parts, limb.end)
+            distances = [shapely.distance(part, places) for part in parts]
+            is_body &= np.argmin(distances, axis=0) != own
+    left = candidates[is_body]
+    return readonly(left[_spread(left, BODY_POINTS)])
+
+
+def larger_end(loops: Sequence[Complexes], start: complex, end: complex) -> int:
+    """Return the end of a bone, 0 or 1, on whose side more of the drawing lies."""
+    shape = measure_limb(loops, start, end)
+    middle_first = shape.stations[np.argsort(np.abs(shape.stations - 0.5))]
+    limb = LimbCut(start, end, end, shape._replace(stations=middle_first))
+    parts = _cut_limb(loops, shapely_region(loops[0], loops[1:]), limb)
+    if parts is None:
+        return 0
+    areas = [parts[_nearest_part(parts, place)].area for place in (start, end)]
+    return int(areas[1] > areas[0])
+
+
+def joint_share(points: Complexes, place: complex, half_width: float) -> Floats:
+    """Return how much points belong to a joint: 1 near it, and 0 beyond it.
+
+    Inside a bend θ the outline gives way up to w tan(θ/2) along each bone of half width w.
+    """
+    depth = np.clip(BEYOND_JOINT - np.abs(points - place) / half_width, 0.0, 1.0)
+    share: Floats = depth * depth * (3 - 2 * depth)
+    return share
+
+
+def _cut_limb(
+    loops: Sequence[Complexes], whole: shapely.Geometry, limb: LimbCut
+) -> list[shapely.Geometry] | None:
+    """Return the parts of the drawing after a cut that separates a limb's end from its root."""
+    way = limb.joint - limb.root
+    aside, thickness = 1j * way / abs(way), 1e-3 * abs(way)
+    left, right = measure_distances(loops, limb.root, limb.joint, limb.shape.stations)
+    for share, before, behind in zip(limb.shape.stations, left, right, strict=True):
+        foot = limb.root + share * way
+        ends = [foot + aside * (before + thickness), foot - aside * (behind + thickness)]
+        if not np.isfinite(ends).all():
+            continue
+        cut = shapely.LineString(as_xy(np.array(ends))).buffer(thickness / 2)
+        parts = list(shapely.get_parts(whole.difference(cut)))
+        if _nearest_part(parts, limb.end) != _nearest_part(parts, limb.root):
+            return parts
+    return None
+
+
+def _nearest_part(parts: Sequence[shapely.Geometry], place: complex) -> int:
+    point = shapely.Point(place.real, place.imag)
+    return int(np.argmin([shapely.distance(part, point) for part in parts]))
+
+
+def _spread(points: Complexes, count: int) -> list[int]:
+    """Return the indices of points that are far from each other."""
+    if len(points) == 0:
+        return []
+    chosen = [0]
+    distances = np.abs(points - points[0])
+    while len(chosen) < min(count, len(points)):
+        chosen.append(int(np.argmax(distances)))
+        distances = np.minimum(distances, np.abs(points - points[chosen[-1]]))
+    return chosen
