@@ -111,6 +111,7 @@ from app.document.keyframe import (
     Target as Target,
 )
 from app.document.layer import (
+    FOLDING_ANGLE as FOLDING_ANGLE,
     FOLDING_JOINTS as FOLDING_JOINTS,
     Layer as Layer,
     PictureFile as PictureFile,

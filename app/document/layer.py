@@ -47,6 +47,7 @@ Posed = TypeVar("Posed", Keyframe, LibraryPose)
 V = TypeVar("V")
 # Limits at joints of bones: an elbow about as thick as long folds by 130°. A bend θ over a length ℓ
 # of a limb of width W needs ln(σ_a / σ_b) ≥ θ W / ℓ.
+FOLDING_ANGLE = 130.0
 FOLDING_JOINTS = Bounds(k=0.85, sigma_a=4.0, sigma_b=0.15)
 NO_CHANNELS: ChannelKeys = MappingProxyType({})
 NO_KEY = N_("There is no key at frame {frame}.")

@@ -22,7 +22,7 @@ from app.document import (
 )
 from app.motion import Animation, PoseSampler
 from app.solving.limb_targets import carry_body, solve_limbs
-from app.solving.limbs import JOINT_FORCE, Limbs, PosedLimbs, locate_joints
+from app.solving.limbs import END_FORCE, Limbs, PosedLimbs, locate_joints
 from engine.arrays import Booleans, Complexes
 from engine.deform import Armature, BoundedPull, Deformer, Handles, HandleTargets, State
 from engine.errors import EngineError
@@ -152,6 +152,12 @@ class PosedRig:
         joints = posed.limbs.joints if posed.limbs is not None else {}
         return posed, solve_limbs(layer, limbs, joints, self.start, body.targets)
 
+    @property
+    def _ends(self) -> frozenset[int]:
+        """The ids of the ends of all limbs, which are dragged with a force of their own."""
+        limbs = self.rig.limbs.limbs if self.rig.limbs is not None else ()
+        return frozenset(limb.chain.end for limb in limbs)
+
     def build_targets(
         self,
         targets: Mapping[int, Target],
@@ -167,8 +173,7 @@ class PosedRig:
         pulling = [
             BoundedPull(
                 [index[i] for i in sorted(hand.handles) if i in index],
-                # A limb folds against more resistance than a shape without bones.
-                max(hand.max_force, 0.0 if self.limbs is None else JOINT_FORCE),
+                END_FORCE if self._ends.issuperset(hand.handles) else hand.max_force,
             )
             for hand in hands
             if not index.keys().isdisjoint(hand.handles)

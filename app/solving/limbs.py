@@ -21,6 +21,9 @@ from engine.maps import Boundary, HarmonicMap
 BODY_STIFFNESS = 1e2
 # Largest force, per L, with which joints are pulled to the places of kinematics.
 JOINT_FORCE = 50.0
+# The same of dragged ends, which kinematics keeps within reach. An arm that has to bend inside a
+# broad trunk needs more than joints do.
+END_FORCE = 200.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

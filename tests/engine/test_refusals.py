@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from shapes import regular_polygon
 
-from engine.deform import BoundedPull, Deformer, DistanceConstraint, Handles
+from engine.deform import Aim, BoundedPull, Deformer, Handles
 from engine.dirichlet import HilbertTransform
 from engine.domain import build_domain, find_holes, mesh_inside, rectangle_domain
 from engine.domain.material.brush import brush_weights
@@ -71,9 +71,7 @@ REFUSED = {
     "weights as text": lambda: Handles.place(boundary(), np.array([0j]), ["x"]),
     "rotations as text": lambda: handles().targets([0j, 1], ["a", "b"]),
     "half a handle in a hand": lambda: handles().targets([0j, 1], None, [BoundedPull([0.5])]),
-    "half a handle in a link": lambda: handles().targets(
-        [0j, 1], None, (), [DistanceConstraint(0.5, 1, 0, 2)]
-    ),
+    "half a handle in a link": lambda: handles().targets([0j, 1], None, (), [Aim(0, 1, 0)]),
     "keyframes as arrays": lambda: prepare([CAGE, CAGE], boundary(), [0j]),
     "a time as text": lambda: in_between("0.5"),
     "a time that is no number": lambda: in_between(NAN),

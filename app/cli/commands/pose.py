@@ -94,19 +94,31 @@ A handle may set the depth of the drawing around it, from -1 (behind) to 1 (in f
 around, in pixels: {"at": [120, 880], "front": 0.5, "extent": 60}. A key with "front": {"nose": 1}
 sets it from there on.
 
+Limbs have bones, which keep their length:
+
+   "bones": [["shoulder", "elbow", "hand"], ["hip", "knee", "foot"]]
+
+Each chain names its handles from root to end. A key that names the end alone bends the whole chain:
+{"frame": 12, "targets": {"hand": [300, 330]}}. An end beyond reach stays on its circle, and a
+notice says how far it is off. A key that names a joint turns the chain around its root. A key that
+names roots alone moves the body with them. A joint bends to the side to which it bends in the key
+before, at first as it is drawn. A key with "side": {"elbow": 1} bends it to the left of the way
+from root to end, and -1 to the right. "angle": {"foot": 0} sets the rotation of an end, in degrees
+from the drawing. Several chains may start at a handle, but only one bone may end there.
+
 Parts of the drawing are stiffer or softer with
 
    "stiff": [{"around": [530, 800], "radius": 250, "amount": 10},
              {"from": "elbow", "to": "wrist", "amount": 30}]
 
 The first entry paints the outline within so many pixels of a point, as far as it is visible from
-there. The second entry is a bone: the limb between two handles without the joints at its ends.
-"amount" is from 1/30, soft, to 100. Above 1 the limits are tighter, too: k and the logarithms of
-sigma_a and sigma_b are divided by the square root of the amount.
+there. The second entry is a chain of one bone from root to end, and sets how stiff the drawing is
+beside it. "amount" is from 1/30, soft, to 100. Above 1 the limits are tighter, too: k and the
+logarithms of sigma_a and sigma_b are divided by the square root of the amount.
 
 DRAWING may have layers (OpenRaster .ora, or .psd if psd-tools is installed). Coordinates are then
-pixels of the canvas. In place of anchor, handles, keys, tracks, springs, cycles and stiff, a script
-of several layers has
+pixels of the canvas. In place of anchor, handles, bones, keys, tracks, springs, cycles and stiff, a
+script of several layers has
 
    "layers": [{"layer": "body", "handles": {}, "keys": [{"frame": 0}]},
                {"layer": "arm", "handles": {"hand": [310, 240]},

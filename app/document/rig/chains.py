@@ -87,7 +87,7 @@ def require_chains(bones: Sequence[Bone], names: Mapping[int, str]) -> None:
     for end, count in Counter(end for ends in children.values() for end in ends).items():
         require(count == 1, TWO_BONES_END, handle=names.get(end, str(end)))
     parents = {end: root for root, ends in children.items() for end in ends}
-    for start in parents:
+    for start in sorted(parents):
         way = [start]
         while way[-1] in parents and len(way) <= len(parents):
             way.append(parents[way[-1]])

@@ -6,12 +6,15 @@ given. A chain of more bones has many: the nearest to its present joints is foun
 Nearer than its bones can fold, its end stays on the circle of the sharpest fold.
 """
 
+import cmath
 import math
 from collections.abc import Sequence
+from itertools import accumulate
 
 # Bend of a joint beyond which a chain does not fold, in radians.
 SHARPEST_BEND = math.radians(150)
 SWEEPS = 60  # of FABRIK
+HALVINGS = 60  # in the search for an even bend
 TOLERANCE = 1e-10  # of the chain's length
 # A chain whose joints bend by less counts as straight: its sides are the given ones.
 STRAIGHT = math.radians(4)
@@ -36,7 +39,12 @@ def solve_chain(
         return [goal]
     if len(lengths) == 2:
         return [_middle(root, goal, lengths[0], lengths[1], side), goal]
-    return _fabrik(root, lengths, goal, _bent_start(root, lengths, start, side))
+    places = [root, *start]
+    triples = zip(places, places[1:], places[2:], strict=False)
+    is_bent = any(bend_side(*triple) for triple in triples)
+    if is_bent and abs(goal - root) < (1 - TOLERANCE) * sum(lengths):
+        return _fabrik(root, lengths, goal, start)
+    return _evenly_bent(root, lengths, goal, side)
 
 
 def clamp_goal(root: complex, lengths: Sequence[float], goal: complex, present: complex) -> complex:
@@ -78,20 +86,27 @@ def _middle(root: complex, goal: complex, first: float, second: float, side: int
     return root + (goal - root) / distance * complex(along, side * across)
 
 
-def _bent_start(
-    root: complex, lengths: Sequence[float], start: Sequence[complex], side: int
+def _evenly_bent(
+    root: complex, lengths: Sequence[float], goal: complex, side: int
 ) -> list[complex]:
-    """Return the present joints, bent a little to the side if they lie on a straight line."""
-    places = [root, *start]
-    triples = zip(places, places[1:], places[2:], strict=False)
-    if any(bend_side(*triple) for triple in triples):
-        return list(start)
-    bulge, done, whole = side * 0.05j * (start[-1] - root), 0.0, sum(lengths)
-    bent = []
-    for place, length in zip(start, lengths, strict=True):
-        done += length
-        bent.append(place + 4 * bulge * (done / whole) * (1 - done / whole))
-    return bent
+    """Return the joints of a chain that bends by the same angle at each of them."""
+    low, high = 0.0, 2 * math.pi / len(lengths)
+    for _ in range(HALVINGS):
+        bend = (low + high) / 2
+        if abs(_with_bend(lengths, bend)[-1]) > abs(goal - root):
+            low = bend
+        else:
+            high = bend
+    # Bends to the right leave the joints on the left of the way.
+    places = [place.conjugate() if side > 0 else place for place in _with_bend(lengths, low)]
+    turn = (goal - root) / abs(goal - root) * abs(places[-1]) / places[-1]
+    return [root + turn * place for place in places]
+
+
+def _with_bend(lengths: Sequence[float], bend: float) -> list[complex]:
+    """Return the joints of a chain from 0, each bone turned by an angle against the last."""
+    ways = (length * cmath.rect(1.0, bend * i) for i, length in enumerate(lengths))
+    return list(accumulate(ways))
 
 
 def _fabrik(

@@ -49,13 +49,13 @@ def limits_along(layer: Layer, boundary: Boundary) -> LocalBounds:
 
 def joint_shares(layer: Layer, points: Complexes) -> Floats:
     """Return how much points of the outline belong to joints of bones, from 0 to 1."""
-    widths: dict[int, float] = {}
-    for bone, shape in limb_shapes(layer).items():
-        for end in set(bone.ends) & layer.bone_joints:
-            widths[end] = max(widths.get(end, 0.0), shape.half_width)
     shares = np.zeros(len(points))
-    for joint, half_width in widths.items():
-        shares = np.maximum(shares, joint_share(points, layer.handle(joint).position, half_width))
+    for bone, shape in limb_shapes(layer).items():
+        start, end = (layer.handle(identity).position for identity in bone.ends)
+        joints = [start, end] if bone.ends[1] in layer.bone_joints else [start]
+        # A limb also bends where it leaves the body.
+        for place in (*joints, start + shape.limb_range[0] * (end - start)):
+            shares = np.maximum(shares, joint_share(points, place, shape.half_width))
     return shares
 
 

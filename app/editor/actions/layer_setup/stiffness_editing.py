@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.document import Bone, bone_region, brushed_stiffness, direct_bone, stiffness_commands
+from app.document import Bone, brushed_stiffness, direct_bone, stiffness_commands
 from app.editor.action import do
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import ActionSpec, named_action, unless
@@ -54,7 +54,7 @@ DRAW_BONES = ActionSpec(
     _("Draw bones"),
     "Shift+B",
     icon="BONE",
-    hint=_("Drag from one handle to another: the limb between them is stiff"),
+    hint=_("Drag from root to end, such as hip to knee: the limb keeps its length"),
     active=lambda session: session.tools.mode == "bone",
 )
 
@@ -137,7 +137,7 @@ def bone_disabled_reason(project: Project, ends: tuple[int, int]) -> str | None:
     """Return why no bone can be put between two handles; None if one can."""
     layer = project.layer
     try:
-        bone_region(layer, Bone(ends=ends), layer.domain.outline)
+        stiffness_commands.with_bone(layer, Bone(ends=ends))
     except (EngineError, LissomError) as error:
         return message_of(error)
     return None

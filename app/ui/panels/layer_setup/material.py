@@ -3,7 +3,7 @@
 import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Layer, stiffness_commands
+from app.document import FOLDING_ANGLE, Bone, Layer, stiffness_commands
 from app.editor import Action, Project, Session, StiffnessTool, do
 from app.editor.actions import editing, viewing
 from app.editor.actions.layer_setup import cut_out_editing, resolving, stiffness_editing
@@ -135,15 +135,13 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
         if entered is not None:
             stiffen = stiffness_commands.set_bone_stiffness
             actions.append(do(editing.edit_layer, stiffen, bone.ends, entered.value))
-        small_text(look, _describe_limits(layer, bone.stiffness))
+        small_text(look, _describe_bone(layer, bone))
         imgui.pop_id()
     return actions
 
 
 def _describe_limits(layer: Layer, amount: float) -> str:
-    """Describe the limits of new poses in a part of this stiffness."""
-    if amount <= 1:
-        return _("This part bends and stretches more, within the limits of the layer.")
+    """Describe the limits of new poses in a stiff part."""
     limits = layer.bounds.scaled_by(np.array([amount]))
     fields = limits.k, limits.sigma_a, limits.sigma_b
     shear, stretch, squeeze = (float(np.ravel(each)[0]) for each in fields)
@@ -151,6 +149,17 @@ def _describe_limits(layer: Layer, amount: float) -> str:
         "In new poses this part bends at most {shear:.0%}, stretches at most {stretch:.0%} and "
         "shrinks at most {shrinkage:.0%}."
     ).format(shear=shear, stretch=stretch - 1, shrinkage=1 - squeeze)
+
+
+def _describe_bone(layer: Layer, bone: Bone) -> str:
+    """Describe what a bone does in new poses."""
+    if not bone.is_limb:
+        return _("This part bends and stretches more, within the limits of the layer.")
+    if bone.ends[1] not in layer.bone_joints:
+        return _("This bone keeps its length.")
+    return _("This bone keeps its length. {joint} may fold by {angle:.0f}°.").format(
+        joint=layer.handle(bone.ends[1]).name, angle=FOLDING_ANGLE
+    )
 
 
 def _whole(layer: Layer) -> list[Action]:
