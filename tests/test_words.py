@@ -26,7 +26,6 @@ REPLACED_LONG = {
     "app/document/model.py",
     "app/motion/caches/inbetween_cache.py",
     "app/motion/inbetweens/pose_sampler.py",
-    "app/solving/drag_solver.py",
 }
 # Tables are looked things up in, and read by nobody from end to end.
 TABLES = {

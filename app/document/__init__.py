@@ -51,7 +51,6 @@ from app.document.channels.sliders import (
     format_slider_value as format_slider_value,
 )
 from app.document.channels.sounds import (
-    SHORTEST as SHORTEST,
     Cue as Cue,
     Mouths as Mouths,
     Sound as Sound,
@@ -91,12 +90,8 @@ from app.document.commands.layers import (
     layer_commands as layer_commands,
     switch_group_commands as switch_group_commands,
 )
-from app.document.commands.pose_commands import (
-    with_all_targets as with_all_targets,
-)
-from app.document.history.undo_history import (
-    History as History,
-)
+from app.document.commands.pose_commands import with_all_targets as with_all_targets
+from app.document.history.undo_history import History as History
 from app.document.history.undo_step import (
     PreviewPose as PreviewPose,
     UnfinishedStepError as UnfinishedStepError,
@@ -126,7 +121,6 @@ from app.document.layers.groups import (
     BLEND_SECTIONS as BLEND_SECTIONS,
     BLENDS as BLENDS,
     GROUP_BLEND_SECTIONS as GROUP_BLEND_SECTIONS,
-    GROUP_BLENDS as GROUP_BLENDS,
     MAX_GROUP_DEPTH as MAX_GROUP_DEPTH,
     BlendMode as BlendMode,
     Group as Group,
@@ -151,7 +145,6 @@ from app.document.queries.channel_values.channel_keys import (
     all_keys as all_keys,
     channels_in as channels_in,
     channels_of as channels_of,
-    cycles_of as cycles_of,
     describe_channel as describe_channel,
     display_frame as display_frame,
     frames_in as frames_in,
@@ -194,7 +187,6 @@ from app.document.queries.channel_values.values_at import (
 )
 from app.document.queries.clips import (
     Clip as Clip,
-    SliderChannel as SliderChannel,
     clip_of as clip_of,
     motion_source as motion_source,
 )
@@ -202,7 +194,6 @@ from app.document.queries.key_segments import (
     Segment as Segment,
     clip_segments as clip_segments,
     loop_segment as loop_segment,
-    segment_at_frame as segment_at_frame,
     segment_keys as segment_keys,
     segment_layout as segment_layout,
 )
@@ -235,7 +226,6 @@ from app.document.queries.material.bone_directions import (
     with_directed_bones as with_directed_bones,
 )
 from app.document.queries.material.boundary_stiffness import (
-    bone_region as bone_region,
     brushed_stiffness as brushed_stiffness,
     stiff_outline as stiff_outline,
     stiffness_source as stiffness_source,
@@ -248,7 +238,6 @@ from app.document.queries.material.local_limits import (
 from app.document.queries.memo import memoized_on as memoized_on
 from app.document.queries.pose_tangents import (
     PoseSegment as PoseSegment,
-    adjacent_segments as adjacent_segments,
     pose_segments as pose_segments,
 )
 from app.document.queries.target_error import (
@@ -271,12 +260,7 @@ from app.document.rig.applied_motion import (
     UnreadMotion as UnreadMotion,
     require_motions as require_motions,
 )
-from app.document.rig.chains import (
-    DEFAULT_BONE_STIFFNESS as DEFAULT_BONE_STIFFNESS,
-    Bone as Bone,
-    Chain as Chain,
-    find_chains as find_chains,
-)
+from app.document.rig.chains import Bone as Bone, Chain as Chain, find_chains as find_chains
 from app.document.rig.mirror_names import (
     PAIRS as PAIRS,
     SidePairs as SidePairs,
@@ -286,9 +270,7 @@ from app.document.rig.mirror_names import (
     mirrored_name as mirrored_name,
     parse_pairs as parse_pairs,
 )
-from app.document.rig.stiffness import (
-    transfer_painted_stiffness as transfer_painted_stiffness,
-)
+from app.document.rig.stiffness import transfer_painted_stiffness as transfer_painted_stiffness
 from app.document.settings import (
     FASTEST as FASTEST,
     FRAME_NAMES as FRAME_NAMES,

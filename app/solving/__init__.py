@@ -5,11 +5,9 @@ Out: certified poses.
 Imports: `app.motion`, `app.storage`.
 """
 
-from app.solving.drag_solver import (
-    DragSolver as DragSolver,
-    Rig as Rig,
-    fit_shown_pose as fit_shown_pose,
-)
+from app.solving.drag.drag_solver import DragSolver as DragSolver
+from app.solving.drag.rig import Rig as Rig
+from app.solving.drag.shown_pose import fit_shown_pose as fit_shown_pose
 from app.solving.flipping import flip_poses as flip_poses, flip_targets as flip_targets
 from app.solving.motion_preset.joints_file import (
     JointsFile as JointsFile,

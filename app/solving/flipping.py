@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from app.document import PAIRS, Layer, Pose, SidePairs, Target, mirrored_handles
-from app.solving.drag_solver import Rig, pins_of
+from app.solving.drag.rig import Rig, pins_of
 from app.solving.pose_transfer import (
     SimilarityTransform,
     find_initial_map,

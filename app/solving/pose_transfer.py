@@ -7,7 +7,8 @@ from typing import Self
 import numpy as np
 
 from app.document import Layer, Pose, Target
-from app.solving.drag_solver import Rig, fit_map, pins_of
+from app.solving.drag.rig import Rig, pins_of
+from app.solving.drag.shown_pose import fit_map
 from engine.arrays import Complexes
 from engine.deform import StartingPoint
 from engine.geometry import contains, diameter

@@ -17,7 +17,8 @@ from app.document import (
     shape_commands,
     transfer_painted_stiffness,
 )
-from app.solving.drag_solver import Rig, fit_map, pins_of
+from app.solving.drag.rig import Rig, pins_of
+from app.solving.drag.shown_pose import fit_map
 from app.texts import _, message_of
 from engine.arrays import Bytes
 from engine.geometry import contains

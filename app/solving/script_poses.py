@@ -15,7 +15,8 @@ from app.document import (
     measure_target_errors,
     rest_pose,
 )
-from app.solving.drag_solver import DragSolver, Rig
+from app.solving.drag.drag_solver import DragSolver
+from app.solving.drag.rig import Rig
 from app.solving.script.keys import PoseKey
 from app.solving.script.sliders import ScriptSlider
 from app.solving.script_scene import find_layer

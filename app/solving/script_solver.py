@@ -22,7 +22,7 @@ from app.document import (
     with_directed_bones,
 )
 from app.errors import LissomError
-from app.solving.drag_solver import Rig
+from app.solving.drag.rig import Rig
 from app.solving.script.keys import PoseKey
 from app.solving.script.pose_script import LayerScript, PoseScript
 from app.solving.script.sounds import with_sounds

@@ -17,7 +17,7 @@ from app.errors import LissomError
 from app.motion import Animation
 from app.motion.meshes.deform_mesh import DeformMesh
 from app.reports import certify_clip
-from app.solving.drag_solver import fit_map
+from app.solving.drag.shown_pose import fit_map
 from app.storage import load_project, save_project
 from engine.domain import MeshedDomain, require_domain
 from engine.domain.meshing.triangulation import triangulate

@@ -74,7 +74,7 @@ class SliderStage:
             solver = sampler.slider_solver(
                 poses,
                 turns,
-                layer.bounds,
+                layer.widest_bounds,
                 _pins(layer, poses, sampler.sites.anchor),
                 is_anchored=layer.has_parent,
             )

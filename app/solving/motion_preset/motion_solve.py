@@ -18,7 +18,9 @@ from app.document import (
 )
 from app.errors import LissomError
 from app.rigging import Body
-from app.solving.drag_solver import DragSolver, Rig, fit_shown_pose
+from app.solving.drag.drag_solver import DragSolver
+from app.solving.drag.rig import Rig
+from app.solving.drag.shown_pose import fit_shown_pose
 from app.solving.motion_preset.key_poses import JointKeyPose, find_key_poses, with_joint_weights
 from app.solving.motion_preset.motion_request import (
     MotionRequest,

@@ -10,7 +10,7 @@ from walkers import AXIS, FAR, HANDLES, SIZE, leg
 
 from app.document import Attachment, Document, Target, handle_commands
 from app.solving import PoseTransfer, Rig, SimilarityTransform
-from app.solving.drag_solver import DragSolver
+from app.solving.drag.drag_solver import DragSolver
 from app.solving.pose_transfer import find_initial_map
 
 PLACES = np.array([3 + 1j, 40 - 7j, 12 + 90j, -55 + 20j])

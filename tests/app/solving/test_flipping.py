@@ -8,7 +8,7 @@ from PIL import Image, ImageDraw
 
 from app.document import handle_commands
 from app.solving import Rig, flip_poses, flip_targets
-from app.solving.drag_solver import DragSolver
+from app.solving.drag.drag_solver import DragSolver
 
 MIDDLE = 80.0
 NAMES = {"arm.L": 22 + 60j, "arm.R": 138 + 60j, "hip": 80 + 20j}

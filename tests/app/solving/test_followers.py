@@ -19,7 +19,8 @@ from app.document.commands.keys import (
 from app.document.commands.layers import layer_commands
 from app.editor.actions.posing.pose_drag import drag_handles, nudge_handles, release_drag
 from app.solving import flip_poses, pose_document
-from app.solving.drag_solver import DragSolver, Rig
+from app.solving.drag.drag_solver import DragSolver
+from app.solving.drag.rig import Rig
 from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.solving.script.pose_script import parse_pose_script
 from engine.deform import BoundedPull

@@ -13,7 +13,8 @@ from app.document.channels.tracks import Track, TrackKey
 from app.document.keyframe import Target
 from app.document.model import Document
 from app.document.settings import Meshing
-from app.solving.drag_solver import DragSolver, Rig
+from app.solving.drag.drag_solver import DragSolver
+from app.solving.drag.rig import Rig
 from app.solving.replace_picture import start_picture_replacement
 from app.solving.resolve_keys import step_resolver
 from app.storage.assets import sample_images

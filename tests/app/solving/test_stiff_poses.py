@@ -19,7 +19,8 @@ from app.document import (
 )
 from app.errors import LissomError
 from app.solving import pose_document
-from app.solving.drag_solver import DragSolver, Rig
+from app.solving.drag.drag_solver import DragSolver
+from app.solving.drag.rig import Rig
 from app.solving.replace_picture import start_picture_replacement
 from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.solving.script.pose_script import parse_pose_script

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.document import Layer, Target
 from app.rigging import bend_side, solve_chain
-from app.solving.limbs import LimbChain, Limbs
+from app.solving.drag.limbs import LimbChain, Limbs
 from engine.arrays import Complexes
 from engine.geometry import diameter
 

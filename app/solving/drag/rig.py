@@ -1,4 +1,4 @@
-"""The solver of a drag, step by step, and poses at which a drag begins."""
+"""The solver's data of a layer, at rest and in the pose in which a drag starts."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -7,26 +7,19 @@ from typing import Self
 import numpy as np
 
 from app.document import (
-    Clip,
     Handle,
     Layer,
     Pose,
     Target,
-    keyed_pose_at,
     limits_along,
-    segment_keys,
-    segment_time_at,
-    slider_weights_at,
     stiffness_source,
     with_stiffness,
 )
-from app.motion import Animation, PoseSampler
-from app.solving.limb_targets import carry_body, solve_limbs
-from app.solving.limbs import END_FORCE, Limbs, PosedLimbs, locate_joints
-from engine.arrays import Booleans, Complexes
+from app.solving.drag.limb_targets import carry_body, solve_limbs
+from app.solving.drag.limbs import END_FORCE, Limbs, PosedLimbs, locate_joints
 from engine.deform import Armature, BoundedPull, Deformer, Handles, HandleTargets, State
 from engine.errors import EngineError
-from engine.maps import Boundary, Certificate, HarmonicMap, certify
+from engine.maps import Boundary, Certificate, HarmonicMap
 
 # A drag may start at a pose outside the current limits. Its own distortion is then allowed, and
 # this fraction of the remaining room.
@@ -211,82 +204,6 @@ class PosedRig:
         return Pose.of(shape, {**targets, **here}, certificate)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class DragSolver:
-    """The state of a drag; every map in between is certified.
-
-    The deformer has the layer's limits, widened if the first pose needs it. `pins` are the targets
-    of the fixed points.
-    """
-
-    posed: PosedRig
-    state: State
-    pins: tuple[Target, ...] = ()
-
-    @classmethod
-    def begin(cls, rig: Rig, pose: Pose) -> Self:
-        """Return the drag that begins with a pose; a folded pose raises an `EngineError`."""
-        shape = rig.layer.map_of(pose)
-        posed = rig.posed_at(shape, pose.targets, rig.allow_pose(pose))
-        return cls(posed=posed, state=posed.deformer.start(shape), pins=pins_of(rig.layer, pose))
-
-    @property
-    def rig(self) -> Rig:
-        return self.posed.rig
-
-    @property
-    def is_over(self) -> bool:
-        """Whether more steps would change nothing."""
-        return self.state.status.is_final
-
-    def step_towards(
-        self,
-        targets: Mapping[int, Target],
-        steps: int,
-        hands: Sequence[BoundedPull] = (),
-        pulled: Collection[int] = (),
-    ) -> "DragSolver":
-        """Return the drag after some steps towards the targets, or fewer if it comes to rest.
-
-        `pulled` are the ids of dragged handles. They are included even with springs.
-        """
-        rig = Rig.of(self.rig.layer, self.rig, pulled)
-        posed, followed = self.posed.with_rig(rig).follow(targets)
-        wanted = posed.build_targets(followed, self.pins, hands)
-        state = self.state
-        for _ in range(steps):
-            state = posed.deformer.step(state, wanted)
-            if state.status.is_final:
-                break
-        return replace(self, posed=posed, state=state)
-
-    def release(
-        self, targets: Mapping[int, Target], hands: Sequence[BoundedPull]
-    ) -> tuple["DragSolver", Mapping[int, Target]]:
-        """Return the drag after release, and the new targets of the dragged handles.
-
-        Ends of limbs that are dragged beyond reach are left where the bones reach. A pose at rest
-        is also at rest for the new targets.
-        """
-        posed, followed = self.posed.follow(targets)
-        wanted = posed.build_targets(followed, self.pins, hands)
-        left = wanted.released(posed.deformer.positions(self.state)).positions
-        pulled = {identity for hand in hands for identity in hand.handles}
-        places = {
-            handle.id: replace(followed[handle.id], position=complex(place))
-            for handle, place in zip(posed.rig.handles, left, strict=False)
-            if handle.id in pulled
-        }
-        wanted = posed.build_targets({**followed, **places}, self.pins)
-        return replace(self, state=posed.deformer.release(self.state, wanted)), places
-
-    def make_pose(self, targets: Mapping[int, Target]) -> Pose:
-        """Return the current state as a pose with these targets."""
-        return self.posed.make_pose(
-            self.state.map, self.posed.follow(targets)[1], self.state.certificate
-        )
-
-
 def pins_of(layer: Layer, pose: Pose) -> tuple[Target, ...]:
     """Return the targets of the points that a drag keeps fixed: the anchor of an attached layer."""
     places = layer.map_of(pose)(np.array(_pins(layer), dtype=np.complex128))
@@ -310,87 +227,3 @@ def _pins(layer: Layer) -> tuple[complex, ...]:
     if not layer.has_parent or anchor is None:
         return ()
     return () if any(handle.position == anchor for handle in layer.handles) else (anchor,)
-
-
-def fit_shown_pose(
-    rig: Rig,
-    clip: Clip,
-    frame: float,
-    sibling: PoseSampler | None = None,
-    *,
-    with_sliders: bool = False,
-) -> Pose:
-    """Return a single map that is nearest to a frame, by default without sliders, as a pose.
-
-    At a key it is the key's own pose. In-betweens are no maps over the cage, so their derivatives
-    are fitted on the outline. A fit without certificate is mixed with the nearer key. A sibling of
-    the layer's domain is reused for its data of the outline.
-    """
-    layer, boundary = rig.layer, rig.deformer.boundary
-    moment = segment_time_at(clip, frame)
-    resting = keyed_pose_at(clip, moment)
-    if resting is not None and not (with_sliders and any(slider_weights_at(clip, frame))):
-        return resting
-    after = moment.weight > 0.5
-    near = resting or clip.keys[segment_keys(clip)[moment.segment][after]].pose
-    sampler = PoseSampler(
-        layer.domain, anchor=layer.anchor, points=boundary.points, sibling=sibling
-    )
-    animation = Animation(clip, points=boundary.points, sampler=sampler)
-    base = animation.base
-    found, time = base.segment_at(frame) if with_sliders else base.unslid_at(frame)
-    blended = found.frame(time)
-    fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
-    for share in (1.0, 0.5, 0.25, 0.0):
-        own = layer.map_of(near)
-        mixed = own.changed(
-            *(share * (new - old) for new, old in zip(fitted.columns, own.columns, strict=True))
-        )
-        # The displayed frame may be older than the current stiffness.
-        certificate = certify(mixed, boundary, rig.deformer.bounds)
-        # A frame with sliders may lie on the limits, and its fit a little beyond.
-        is_unfolded = certificate.winding == 0 and certificate.k < 1 and certificate.sigma_b > 0
-        if certificate.is_certified or (with_sliders and is_unfolded):
-            break
-    else:
-        mixed, certificate = layer.map_of(near), near.certificate
-    places = mixed(np.array([handle.position for handle in layer.handles], dtype=np.complex128))
-    targets = {
-        handle.id: Target(position=complex(place))
-        for handle, place in zip(layer.handles, places, strict=True)
-    }
-    return rig.posed_at(mixed, targets).make_pose(mixed, targets, certificate)
-
-
-def fit_map(
-    boundary: Boundary,
-    fz: Complexes,
-    fzbar: Complexes,
-    positions: Complexes,
-    *,
-    inside: Booleans | None = None,
-) -> HarmonicMap:
-    """Return the map over a cage whose derivatives on the outline are nearest to the given ones.
-
-    `fz`, `fzbar` and `positions`, complex128 (s,), are those of the other map at the boundary's
-    samples, or at the samples chosen by `inside`, bool (m,).
-    """
-    chosen = slice(None) if inside is None else inside
-    weights = boundary.lengths[chosen]
-    root = np.sqrt(weights)[:, None]
-    # Constants have no derivative; the positions on the outline determine them.
-    matrix = root * boundary.derivatives[chosen, 1:]
-    wanted = root * np.column_stack([fz, fzbar.conj()])
-    solved, *_ = np.linalg.lstsq(matrix, wanted, rcond=None)
-    count = len(boundary.holes)
-    logs: Complexes = np.empty(0, dtype=np.complex128)
-    if count:
-        # The logarithms of Ψ are conjugates of those of Φ. With their mean, the rest is fitted once
-        # more.
-        logs = np.asarray(solved[-count:, 0] + solved[-count:, 1].conj(), np.complex128) / 2
-        wanted = wanted - matrix[:, -count:] @ np.column_stack([logs, logs.conj()])
-        solved, *_ = np.linalg.lstsq(matrix[:, :-count], wanted, rcond=None)
-    phi, psi = (np.concatenate([[0], column]) for column in solved.T)
-    shape = HarmonicMap(cage=boundary.cage, phi=phi, psi=psi, holes=boundary.holes, logs=logs)
-    offset = weights @ (positions - shape(boundary.points[chosen])) / weights.sum()
-    return shape.moved(1.0, complex(offset))

@@ -1,0 +1,88 @@
+"""The solver of a drag, step by step."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+from app.document import (
+    Pose,
+    Target,
+)
+from app.solving.drag.rig import PosedRig, Rig, pins_of
+from engine.deform import BoundedPull, State
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DragSolver:
+    """The state of a drag; every map in between is certified.
+
+    The deformer has the layer's limits, widened if the first pose needs it. `pins` are the targets
+    of the fixed points.
+    """
+
+    posed: PosedRig
+    state: State
+    pins: tuple[Target, ...] = ()
+
+    @classmethod
+    def begin(cls, rig: Rig, pose: Pose) -> Self:
+        """Return the drag that begins with a pose; a folded pose raises an `EngineError`."""
+        shape = rig.layer.map_of(pose)
+        posed = rig.posed_at(shape, pose.targets, rig.allow_pose(pose))
+        return cls(posed=posed, state=posed.deformer.start(shape), pins=pins_of(rig.layer, pose))
+
+    @property
+    def rig(self) -> Rig:
+        return self.posed.rig
+
+    @property
+    def is_over(self) -> bool:
+        """Whether more steps would change nothing."""
+        return self.state.status.is_final
+
+    def step_towards(
+        self,
+        targets: Mapping[int, Target],
+        steps: int,
+        hands: Sequence[BoundedPull] = (),
+        pulled: Collection[int] = (),
+    ) -> "DragSolver":
+        """Return the drag after some steps towards the targets, or fewer if it comes to rest.
+
+        `pulled` are the ids of dragged handles. They are included even with springs.
+        """
+        rig = Rig.of(self.rig.layer, self.rig, pulled)
+        posed, followed = self.posed.with_rig(rig).follow(targets)
+        wanted = posed.build_targets(followed, self.pins, hands)
+        state = self.state
+        for _ in range(steps):
+            state = posed.deformer.step(state, wanted)
+            if state.status.is_final:
+                break
+        return replace(self, posed=posed, state=state)
+
+    def release(
+        self, targets: Mapping[int, Target], hands: Sequence[BoundedPull]
+    ) -> tuple["DragSolver", Mapping[int, Target]]:
+        """Return the drag after release, and the new targets of the dragged handles.
+
+        Ends of limbs that are dragged beyond reach are left where the bones reach. A pose at rest
+        is also at rest for the new targets.
+        """
+        posed, followed = self.posed.follow(targets)
+        wanted = posed.build_targets(followed, self.pins, hands)
+        left = wanted.released(posed.deformer.positions(self.state)).positions
+        pulled = {identity for hand in hands for identity in hand.handles}
+        places = {
+            handle.id: replace(followed[handle.id], position=complex(place))
+            for handle, place in zip(posed.rig.handles, left, strict=False)
+            if handle.id in pulled
+        }
+        wanted = posed.build_targets({**followed, **places}, self.pins)
+        return replace(self, state=posed.deformer.release(self.state, wanted)), places
+
+    def make_pose(self, targets: Mapping[int, Target]) -> Pose:
+        """Return the current state as a pose with these targets."""
+        return self.posed.make_pose(
+            self.state.map, self.posed.follow(targets)[1], self.state.certificate
+        )
