@@ -13,7 +13,7 @@ force F keeps the target error L (|pull| / F)³. Out of reach it thus stops smoo
 pull grows without bound, and the target error makes up for it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -47,15 +47,10 @@ FIRMEST = 1.5  # times the largest pull: the merit's weight of each target error
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PointSolution:
-    """A correction.
+    """A correction: x (2N,) in `Variables`, a translation, and target errors (m,).
 
     Parameters
     ----------
-    x : float64, shape (2N,)
-        In `Variables`.
-    shift : complex
-        Translation of all points.
-    target_errors : float64, shape (m,)
     is_limited : bool
         Whether it came near a limit, so that the barrier took part.
     is_finished : bool
@@ -119,9 +114,7 @@ def take_newton_step(
     problem = _Problem(corrector, base, targets, None)
     at = problem.state(start.x, start.shift)
     step, shift = StepModel(at.frame.x, problem.constraint_rows(at)).solve_step()
-    after = problem.state(start.x + step, start.shift + shift)
-    misses = np.abs(after.frame.places() + after.shift - problem.wanted)[: problem.count]
-    return PointSolution(x=after.frame.x, shift=after.shift, target_errors=misses, steps=1)
+    return problem.solution(problem.state(start.x + step, start.shift + shift), 1)
 
 
 class _State(NamedTuple):
@@ -249,10 +242,11 @@ class _Problem:
                 break
         else:
             is_finished = False
+        return replace(self.solution(at, steps), is_finished=is_finished)
+
+    def solution(self, at: _State, steps: int) -> PointSolution:
         misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
-        return PointSolution(
-            x=at.frame.x, shift=at.shift, target_errors=misses, steps=steps, is_finished=is_finished
-        )
+        return PointSolution(x=at.frame.x, shift=at.shift, target_errors=misses, steps=steps)
 
     def _bending(self, at: _State, pulls: Floats) -> Curvature:
         """Return the curvature of the rows with pulls."""

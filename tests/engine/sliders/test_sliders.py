@@ -32,7 +32,7 @@ HOLED = {
 }
 SHAPES = (*SIMPLE, *HOLED)
 OF_LIMITS = 3e-3  # allowed excess, relative to a limit
-OF_PINS = 1e-4  # allowed drift of pins; the shapes are 2 to 4 long
+OF_PINS = 2e-4  # allowed drift of pins; the shapes are 2 to 4 long
 PINS = {"bar": (-1.7 + 0.1j, 1.6 - 0.1j), "ring": (0.75j, -0.7 + 0j)}
 
 
