@@ -16,7 +16,7 @@ from app.editor.actions import editing
 from app.editor.actions.project_files import saving
 from app.editor.layering import layer_list
 from app.editor.parts.timeline import TimeRangeView
-from app.motion import evaluator
+from app.motion import layer_stages
 
 MANY = 4_000
 CORNERS = 18_000  # more than those of the rest of the window, at most: three full lanes
@@ -113,7 +113,7 @@ def test_layer_under_the_pointer_is_sought_among_those_there(window, monkeypatch
 
 
 def test_layers_are_settled_only_when_something_changed(window, monkeypatch):
-    asked, evaluate = [], evaluator.evaluate_layer
+    asked, evaluate = [], layer_stages.evaluate_layer
 
     def counted(*given):
         asked.append(1)
@@ -122,7 +122,7 @@ def test_layers_are_settled_only_when_something_changed(window, monkeypatch):
     with window.session.jobs.held():
         show(window, many_layers())
         window.frames(3)
-        monkeypatch.setattr(evaluator, "evaluate_layer", counted)
+        monkeypatch.setattr(layer_stages, "evaluate_layer", counted)
         window.frames(3)
         assert not asked
         editing.edit_document(window.session, layer_commands.rename_layer(1, "arm"))
