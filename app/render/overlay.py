@@ -74,9 +74,8 @@ def _segments(line: Line, view: View) -> Singles:
     """Return one row (s, 15) for each segment of a line."""
     points = np.append(line.points, line.points[0]) if line.closed else np.asarray(line.points)
     start, end = points[:-1], points[1:]
-    before, after = np.roll(start, 1), np.roll(end, -1)
-    if not line.closed:
-        before[0], after[-1] = start[0], end[-1]
+    first, last = (start[-1], end[0]) if line.closed else (start[0], end[-1])
+    before, after = np.append(first, start[:-1]), np.append(end[1:], last)
     travelled = np.cumsum(np.abs(end - start)) * view.scale
     rows = np.empty((len(start), 15), np.float32)
     for column, place in enumerate((before, start, end, after)):

@@ -207,7 +207,8 @@ class DragSession(PendingChange):
         return None if self.targets is None else self._moved(self.targets)
 
     def _moved(self, targets: Mapping[int, Target]) -> Mapping[int, Target]:
-        return _moved_targets(targets, dict.fromkeys(targets, sum(self.translations.values())))
+        way = sum(self.translations.values())
+        return _moved_targets(targets, dict.fromkeys(targets, way)) if way else targets
 
     def update_targets(self, changes: dict[object, TargetChange]) -> None:
         """Compute the targets of these changes; if a target is refused, the earlier ones stay."""

@@ -362,7 +362,7 @@ class InbetweenCache:
 
     def has_failed(self, clip: Clip, part: InbetweenPart = "in-betweens") -> bool:
         """Return whether a part of a clip is known to be impossible."""
-        return (part, self.memory.keys_of(clip)) in self._failures
+        return bool(self._failures) and (part, self.memory.keys_of(clip)) in self._failures
 
     def _poses(self) -> frozenset[Pose]:
         """Return the poses whose samples are needed."""

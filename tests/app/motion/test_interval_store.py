@@ -23,7 +23,6 @@ from app.editor.actions import editing, viewing
 from app.editor.actions.updates.stage_jobs import STREAMING, due_jobs
 from app.editor.parts.settings import SessionSettings
 from app.editor.session import Session
-from app.editor.work.drag_session import DragSession
 from app.editor.work.jobs import Jobs
 from app.motion import (
     CachedSegment,
@@ -456,16 +455,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     project.layer_runtime.store = InbetweenCache(mesh=store.mesh)
     prepare(project.layer_runtime.store, clip)
     project.history = History(document, saved=True)
-    drag = DragSession(
-        clip=clip,
-        frame=13,
-        gesture=object(),
-        start=None,
-        before=None,
-        is_keyed=True,
-        easing=session.settings.preferences.easing,
-    )
-    project.pending.add(drag)
+    project.history.hold(object())
     assert not list(due_jobs(session, project))
 
 

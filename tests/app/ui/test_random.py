@@ -8,6 +8,7 @@ import harness
 import numpy as np
 import pytest
 from documents import differences
+from hands import HANDS, WIDGET
 from imgui_bundle import imgui
 from invariants import check_invariants
 from layered import openraster
@@ -51,7 +52,7 @@ from app.document.commands.keys import (
 from app.document.commands.layers import layer_commands
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
-from app.editor.action import Action
+from app.editor.action import Action, do
 from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import (
     cut_out_editing,
@@ -71,6 +72,7 @@ from app.editor.actions.posing.pose_drag import (
     release_drag,
     set_targets,
 )
+from app.editor.actions.project_files import saving
 from app.editor.actions.timing import channel_keys, keys, springs, timeline_drag, tracks
 from app.editor.actions.updates import frame_update
 from app.editor.layering.layer_list import (
@@ -251,6 +253,7 @@ class Walk:
             if (kinds := self.session.jobs.kinds) and self.chance(1 / 16):
                 self.workers.do(self.choice(kinds))
             self.window.frames(int(self.chance(1 / 10)))
+        self.finish_waiting()
         if number % RESTED == 0:
             self.catch_up(wholly=True)
         self.look(thorough=number % LOOKED_AT == 0, saves=number % SAVED == 0)
@@ -301,10 +304,21 @@ class Walk:
         """Do something as a panel would ask for it."""
         self.note(Action(verb).name, *arguments)
         self.window.act(verb, *arguments)
+        self.finish_waiting()
+
+    def finish_waiting(self) -> None:
+        """Let the workers find the pose that actions wait for."""
+        for _ in range(MOST_FRAMES):
+            if not self.window.program.shell.queue.waiting:
+                return
+            self.workers.do_all()
+            self.window.frames(1)
+        raise AssertionError(f"actions wait:\n{unrest(self.session)}")
 
     def edit(self, command) -> None:
         self.note(command.label)
         self.window.act(editing.edit_document, command)
+        self.finish_waiting()
 
     # What the hands do.
 
@@ -415,6 +429,45 @@ class Walk:
         self.point()
         imgui.get_io().add_mouse_wheel_event(0.0, float(self.choice((-2, -1, 1, 2))))
         self.window.frames(1)
+
+    def hold_and_do(self) -> None:
+        """Change something by a drag of any kind, with other things in the middle of it."""
+        if self.is_down or self.session.dialogs.current is not None:
+            return
+        kind = self.choice(HANDS)
+        self.note(kind)
+        hand = HANDS[kind](self.session, self.act_held)
+        if not hand.is_possible:
+            return
+        if kind in {"track", "turn"}:
+            self.project.selection.select_track(self.project.layer, hand.layer.tracks[0].handles[0])
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(imgui, "is_mouse_down", lambda _: True)
+            patch.setattr(imgui.internal, "get_active_id", lambda: WIDGET)
+            hand.press()
+            for amount in range(1, int(self.rng.integers(2, 6))):
+                hand.move(amount)
+                if self.chance(0.4):
+                    self.pick(MEANWHILE)
+                if kinds := self.session.jobs.kinds:
+                    self.workers.do(self.choice(kinds))
+        hand.let_go()
+        self.session.tools.end()
+        self.window.frames(1)
+        self.finish_waiting()
+        assert not self.project.history.is_held, kind
+
+    def act_held(self, verb, *arguments: object, **words: object) -> None:
+        self.window.program.queue_action(do(verb, *arguments, **words))
+        self.window.frames(1)
+
+    def save(self) -> None:
+        """Save, perhaps while something else is on its way; it is looked at when it is there."""
+        path = self.path.with_stem(f"saved {self.rng.integers(3)}")
+        self.act(saving.write_project, path, None)
+
+    def make_layer_active(self) -> None:
+        self.act(set_active_layer, self.choice(self.document.layers).id)
 
     # What the hands reach rarely by chance.
 
@@ -879,6 +932,24 @@ class Walk:
         assert not differences(self.document, load_project(self.path))
 
 
+# In the middle of a drag.
+MEANWHILE = (
+    (Walk.undo, 3),
+    (Walk.redo, 1),
+    (Walk.save, 2),
+    (Walk.make_layer_active, 2),
+    (Walk.press_escape, 1),
+    (Walk.seek, 1),
+    (Walk.tap_space, 0.5),
+    (Walk.change_layers, 2),
+    (Walk.change_easing, 1),
+    (Walk.delete, 1),
+    (Walk.change_time, 1),
+    (Walk.pull, 1),
+    (Walk.copy_and_paste, 1),
+    (Walk.change_export, 0.5),
+    (Walk.do_named, 2),
+)
 HOLDING = (
     (Walk.move_pointer, 7),
     (Walk.release, 3),
@@ -897,6 +968,7 @@ ALL = (
     (Walk.release, 2),
     (Walk.move_pointer, 2),
     (Walk.click, 4),
+    (Walk.hold_and_do, 6),
     (Walk.double_click, 1),
     (Walk.turn_wheel, 2),
     (Walk.show_tab, 2),

@@ -139,7 +139,8 @@ def _follow_document(session: Session, project: Project) -> None:
     """Update or recall derived values after a change of the document."""
     for identity, runtime in project.runtimes.layers.items():
         runtime.corrected = reuse_corrections(project.document, identity, runtime.corrected)
-    project.measured.extent.recall(extent_key(project.document))
+    if not project.history.is_unfinished:
+        project.measured.extent.recall(extent_key(project.document))
     project.update_comparisons(
         session.display.compare_view.method if session.display.compare_view else None
     )
