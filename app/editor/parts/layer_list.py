@@ -63,7 +63,8 @@ class LayerListState(Revised):
 
     def point_at(self, layer: int | None) -> None:
         """Note the layer whose row is under the pointer in this frame."""
-        self.pointed_layer = layer
+        # It is no change for which anything is updated: it comes and goes in every frame.
+        object.__setattr__(self, "pointed_layer", layer)
 
     def show_import_log(self, *, shown: bool) -> None:
         self.is_import_log_open = shown

@@ -47,6 +47,14 @@ def test_change_of_any_part_changes_the_revision_of_the_session(tmp_path):
         assert session_revision(session) != before, type(part)
 
 
+def test_window_stays_idle_while_the_pointer_is_over_a_layer(document, tmp_path):
+    session = session_of(document, tmp_path)
+    before = session_revision(session)
+    session.project.layer_list.point_at(0)
+    assert session.project.layer_list.pointed_layer == 0
+    assert session_revision(session) == before
+
+
 def test_handles_and_keys_are_not_selected_at_once():
     selection = Selection(active=1)
     selection.select_keys(KEYS)
