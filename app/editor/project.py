@@ -40,7 +40,7 @@ from app.editor.work.motion_setup import MotionJob
 from app.editor.work.pending_work import PendingWork
 from app.editor.work.pose_edits import PoseEdits
 from app.editor.work.revised import Revised
-from app.editor.work.track_drag import TrackDrag
+from app.editor.work.track_keys import PendingTrackKey
 from app.motion import (
     BoundingBox,
     Evaluator,
@@ -191,9 +191,9 @@ class Project(Revised):
         return None
 
     @property
-    def track_drags(self) -> list[TrackDrag]:
-        """The track drags whose keys are pending."""
-        return [change for change in self.pending.changes if isinstance(change, TrackDrag)]
+    def pending_track_keys(self) -> list[PendingTrackKey]:
+        """Keys of dragged tracks that wait for their base motion."""
+        return [each for each in self.pending.changes if isinstance(each, PendingTrackKey)]
 
     @property
     def visible_drag(self) -> DragSession | None:

@@ -18,7 +18,7 @@ from app.document import (
 )
 from app.editor.work.derived import Derived
 from app.editor.work.revised import Revised
-from app.editor.work.track_drag import Recording
+from app.editor.work.track_keys import Recording
 
 SMALLEST, LARGEST = 0.002, 4.0  # em per frame
 MARGIN = 1.4  # em left and right of fitted frames

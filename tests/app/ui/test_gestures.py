@@ -47,7 +47,7 @@ def hand(request, window, loose, is_down):  # noqa: ARG001 - the button is down 
     hand.press()
     hand.move(1)
     hand.move(2)
-    window.until(lambda: loose.document is not hand.before and not loose.track_drags)
+    window.until(lambda: loose.document is not hand.before and not loose.pending_track_keys)
     return hand
 
 
@@ -131,7 +131,7 @@ def test_hand_changes_nothing_of_another_layer(window, loose, hand):
     again = type(hand)(window.session)
     again.press()
     again.move(1)
-    window.until(lambda: not loose.track_drags)
+    window.until(lambda: not loose.pending_track_keys)
     dragged = loose.document
     (other,) = loose.runtimes.layers.keys() - {0}
     set_active_layer(window.session, other)

@@ -12,13 +12,13 @@ from app.document import (
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.posing.pose_drag import release_drag
-from app.editor.actions.tracking.track_dragging import commit_track_drags, commit_track_key
+from app.editor.actions.tracking.track_dragging import key_pending_targets, key_track_target
 from app.editor.actions.tracking.track_space import base_frame_at, handle_index
 from app.editor.error_reports import report_failure
 from app.editor.parts.tools import CLICK
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work.track_drag import RecordedSample, Recording, TrackDrag
+from app.editor.work.track_keys import RecordedSample, Recording, TrackTarget
 from app.errors import LissomError
 from app.motion import BaseMotionFrame, reuse_corrections
 from app.rigging import fit_keys
@@ -151,13 +151,13 @@ def smooth_recording(_: Session, project: Project, smoothing: float) -> None:
         _write(project, take)
 
 
-def update_track_drags(session: Session, project: Project) -> None:
-    """Advance track drags and the recording; once a frame."""
-    if not (project.track_drags or project.timeline.recording):
+def update_track_keys(session: Session, project: Project) -> None:
+    """Advance pending keys of tracks, and the recording; once a frame."""
+    if not (project.pending_track_keys or project.timeline.recording):
         return
     active, runtime = project.selection.active, project.layer_runtime
     runtime.corrected = reuse_corrections(project.document, active, runtime.corrected)
-    commit_track_drags(session, project)
+    key_pending_targets(session, project)
     take = project.timeline.recording
     if take is None:
         return
@@ -193,14 +193,13 @@ def _record(session: Session, project: Project, take: Recording) -> None:
     if shown is not None:
         frame = playback.current_frame(session, project)
         (placement,) = project.placements([frame], shown.placement)
-        held = TrackDrag(
+        target = TrackTarget(
             layer=take.layer,
             handle=take.handle,
             frame=frame,
-            gesture=take.gesture,
             place=placement.apply_inverse(take.place),
         )
-        commit_track_key(session, project, held)
+        key_track_target(session, project, target, take.gesture)
     if project.timeline.playhead is not take.playhead or time == take.last:
         stop_recording(session)
 

@@ -15,7 +15,7 @@ from app.editor.actions.tracking.track_space import (
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work.track_drag import TrackDrag
+from app.editor.work.track_keys import PendingTrackKey, TrackTarget
 from app.errors import LissomError
 from app.texts import _
 
@@ -40,16 +40,10 @@ def drag_track_handle(
     """
     if not project.history.hold(gesture):
         return
-    for held in project.track_drags:
-        if held.gesture is gesture:
-            held.place = place
-            return
     playback.stop_playback(session)
     frame = playback.current_frame(session, project)
-    begun = TrackDrag(
-        layer=project.selection.active, handle=handle, frame=frame, gesture=gesture, place=place
-    )
-    project.pending.add(begun)
+    target = TrackTarget(layer=project.selection.active, handle=handle, frame=frame, place=place)
+    _preview_target(session, project, target, gesture)
 
 
 @with_project
@@ -60,7 +54,6 @@ def rotate_track_handle(
 
     A track that keyed no rotation keys it from now on; its other keys get the pose's rotation.
     """
-    held = next((each for each in project.track_drags if each.gesture is gesture), None)
     track, shown = project.layer.track_of(handle), project.layer_runtime.shown
     if track is None or shown is None or not project.history.hold(gesture):
         return
@@ -69,61 +62,71 @@ def rotate_track_handle(
         project.history.do(command, gesture=gesture)
         text = _("The keys of this track now turn the shape, too.")
         session.notices.show(text, topic="turning")
-    if held is not None:
-        held.turn = angle
-        return
     playback.stop_playback(session)
     frame, place = playback.current_frame(session, project), shown.handle_positions
-    begun = TrackDrag(
+    target = TrackTarget(
         layer=project.selection.active,
         handle=handle,
         frame=frame,
-        gesture=gesture,
         place=complex(place[handle_index(project, handle)]),
         turn=angle,
     )
-    project.pending.add(begun)
+    _preview_target(session, project, target, gesture)
 
 
-def commit_track_drags(session: Session, project: Project) -> None:
-    """Key the targets of track drags whose base motion is known; once a frame."""
-    for held in project.track_drags:
+def _preview_target(
+    session: Session, project: Project, target: TrackTarget, gesture: object
+) -> None:
+    """Key a target on its track, or as soon as the track's base motion is known."""
+    for pending in project.pending_track_keys:
+        if pending.gesture is gesture:
+            project.pending.remove(pending)
+    if not key_track_target(session, project, target, gesture):
+        project.pending.add(PendingTrackKey(target=target, gesture=gesture))
+
+
+def key_pending_targets(session: Session, project: Project) -> None:
+    """Key the pending targets of tracks whose base motion is known by now; once a frame."""
+    for pending in project.pending_track_keys:
+        target = pending.target
         is_there = (
-            project.history.is_open(held.gesture)
-            and held.layer == project.selection.active
-            and held.handle in [handle.id for handle in project.layer.handles]
+            project.history.is_open(pending.gesture)
+            and target.layer == project.selection.active
+            and target.handle in [handle.id for handle in project.layer.handles]
         )
         try:
-            is_over = not is_there or commit_track_key(session, project, held)
+            is_over = not is_there or key_track_target(session, project, target, pending.gesture)
         except LissomError as error:
             report_failure(session, NO_KEY, error)
             is_over = True
         if is_over:
-            project.pending.remove(held)
+            project.pending.remove(pending)
 
 
-def commit_track_key(session: Session, project: Project, held: TrackDrag) -> bool:
-    """Key the target of a track drag; return whether nothing is awaited any more."""
-    handle, frame = held.handle, held.frame
+def key_track_target(
+    session: Session, project: Project, target: TrackTarget, gesture: object
+) -> bool:
+    """Key a target on its track; return False while the track's base motion is unknown."""
+    handle, frame = target.handle, target.frame
     track = project.layer.track_of(handle)
     own = frame if track is None else find_key_frame(session, project.document, track, frame)
     if own is None:
         return True
     at = None if track is None else track_at(track, project.clip, frame)
     velocity = None if track is None else velocity_at(track, project.clip, frame)
-    if held.turn is None:
-        place = to_track_offset(project, handle, frame, held.place)
+    if target.turn is None:
+        place = to_track_offset(project, handle, frame, target.place)
         is_new = track is not None and own not in track.key_frames
         turn = at.turn if at is not None and is_new else None
     else:
-        place = to_track_offset(project, handle, frame, held.place) if at is None else at.place
-        turn = to_track_angle(project, handle, frame, held.turn)
+        place = to_track_offset(project, handle, frame, target.place) if at is None else at.place
+        turn = to_track_angle(project, handle, frame, target.turn)
         if turn is None:
             return False
     if place is None:
         return False
     command = track_commands.put_track_key(
-        held.layer,
+        target.layer,
         handle,
         own,
         place,
@@ -131,5 +134,5 @@ def commit_track_key(session: Session, project: Project, held: TrackDrag) -> boo
         velocity=velocity,
         easing=session.settings.preferences.easing,
     )
-    project.history.do(command, gesture=held.gesture)
+    project.history.do(command, gesture=gesture)
     return True

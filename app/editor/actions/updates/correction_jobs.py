@@ -61,12 +61,12 @@ def _ground(session: Session, project: Project) -> Iterator[Job]:
     wanted = (
         session.tools.mode == "record"
         or project.selected_track is not None
-        or project.track_drags
+        or project.pending_track_keys
         or project.timeline.recording
     )
     if not wanted or FINDING_BASE_FRAMES in session.jobs.kinds:
         return
-    frames = [carry.frame for carry in project.track_drags]
+    frames = [pending.target.frame for pending in project.pending_track_keys]
     frame = frames[0] if frames else playback.current_frame(session, project)
     for clip, runtime, corrected in _corrected(project):
         if clip.layer.id == project.selection.active:

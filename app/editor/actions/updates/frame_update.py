@@ -9,7 +9,7 @@ from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_solver import update_drag
 from app.editor.actions.posing.reach_limit import show_stopped_drag
-from app.editor.actions.tracking.recording import update_track_drags
+from app.editor.actions.tracking.recording import update_track_keys
 from app.editor.actions.updates.stage_jobs import due_jobs, is_worth_preparing
 from app.editor.parts.timeline import measure_key_errors
 from app.editor.project import Project
@@ -35,8 +35,8 @@ def bring_poses(session: Session, project: Project) -> None:
 
 @with_project
 def bring_tracks(session: Session, project: Project) -> None:
-    """Commit track drags to the document."""
-    update_track_drags(session, project)
+    """Key what is dragged or recorded on tracks."""
+    update_track_keys(session, project)
 
 
 @with_project

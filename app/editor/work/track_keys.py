@@ -1,4 +1,4 @@
-"""Track drags: a handle that is dragged on its track, and a recorded drag."""
+"""Targets that become keys of tracks, and a recorded drag."""
 
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -8,11 +8,9 @@ from app.editor.work.pending_change import PendingChange
 from app.texts import _
 
 
-@dataclass(slots=True, kw_only=True, eq=False)
-class TrackDrag(PendingChange):
-    """A handle with a new target or rotation at a frame, on its own track.
-
-    It is pending until the track has the key, which needs the track's base motion.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TrackTarget:
+    """A new target or rotation of a handle at a frame, for its own track.
 
     Attributes
     ----------
@@ -20,8 +18,6 @@ class TrackDrag(PendingChange):
         The first handle of the track.
     frame : int
         In scene time.
-    gesture : object
-        Edits of one gesture are one undo step.
     place : complex
         Target of the handle, in the layer's own space.
     turn : float, optional
@@ -29,13 +25,20 @@ class TrackDrag(PendingChange):
         present place of the handle.
     """
 
-    label: str = _("Keys of a handle")
     layer: int
     handle: int
     frame: int
-    gesture: object
     place: complex
     turn: float | None = None
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class PendingTrackKey(PendingChange):
+    """A track target of a drag that waits for the base motion of its track."""
+
+    label: str = _("Keys of a handle")
+    target: TrackTarget
+    gesture: object
 
 
 class RecordedSample(NamedTuple):
