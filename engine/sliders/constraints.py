@@ -16,7 +16,11 @@ from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.deform.correction.corrector import PointCorrector, build_corrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.point_targets import PointTargets
-from engine.deform.correction.solver import PointSolution, take_newton_step
+from engine.deform.correction.solver import (
+    PointSolution,
+    solve_correction,
+    take_newton_step,
+)
 from engine.dirichlet import Densities, Extension, HilbertTransform
 from engine.interpolation import KeyframeSamples, SampledDomain, sample_domain, sample_keyframes
 from engine.interpolation.inbetweens import PointValues
@@ -24,9 +28,6 @@ from engine.interpolation.series.residual import combine_arrays
 from engine.maps import HarmonicMap
 
 MET = 1e-6  # of the diameter: error of periods that are closed
-# Per diameter: the pull on a pin that lets it move by the diameter. Where limits and pins cannot be
-# had together, pins thus move smoothly; elsewhere they move by a millionth.
-FORCE = 20.0
 
 
 class PoseValues(NamedTuple):
@@ -126,11 +127,14 @@ class Constraints:
         weights: Floats,
         rho: float,
         densities: Densities | None,
-        start: PointSolution,
+        start: PointSolution | None,
+        force: float,
     ) -> PointSolution:
         """Return h a step nearer to the constraints, given the curb's ρ and the densities of r.
 
-        `base` is at the nodes. The result is unfinished if h does not close the periods.
+        Without a start, h meets them. `base` is at the nodes. `force` is the pull on a pin, per
+        diameter, that lets it move by the diameter; the movement grows with the cube of the pull.
+        The result is unfinished if h does not close the periods.
         """
         log_fz, _, conj_eta, _ = self.values.blended(weights)
         if densities is not None:
@@ -140,10 +144,14 @@ class Constraints:
         g = rho * (base.fz * base.g + conj_eta) / fz
         offsets = _places(self.corrector, base.fz, base.g) + weights @ self.moves
         offsets -= _places(self.corrector, fz, g)
-        ones, force = np.ones(len(offsets)), FORCE / self.corrector.boundary.size
-        targets = PointTargets(offsets, ones, self.is_anchored, force * ones)
+        ones = np.ones(len(offsets))
+        forces = force / self.corrector.boundary.size * ones
+        targets = PointTargets(offsets, ones, self.is_anchored, forces)
         frame = BaseFrame(fz, g, np.zeros_like(fz), -1)
-        found = take_newton_step(self.corrector, frame, targets, start)
+        if start is None:
+            found = solve_correction(self.corrector, frame, targets, throw=False)
+        else:
+            found = take_newton_step(self.corrector, frame, targets, start)
         periods = CorrectedFrame.of(self.corrector, frame, found.x).places()[len(offsets) :]
         missed = np.abs(periods).max(initial=0.0)
         is_met = bool(missed <= MET * self.corrector.boundary.size)

@@ -12,7 +12,6 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, nbytes_of
-from engine.deform.correction.solver import PointSolution
 from engine.dirichlet import Densities, HilbertTransform, Refinement
 from engine.errors import EngineError
 from engine.interpolation import SampledDomain
@@ -22,11 +21,11 @@ from engine.sliders.constraints import Constraints
 from engine.sliders.curb import Curb, OutlineBlend, OutlinePoses
 
 # The alternation ends when a round changes ln f_z by at most CLOSE on the boundary. After
-# MOST_ROUNDS, or before a step above FAR, a change below ACCEPTED will do. Else all weights are
-# lowered.
-CLOSE, ACCEPTED, FAR, MOST_ROUNDS = 5e-5, 5e-4, 2.0, 20
+# MOST_ROUNDS, or before a step above FAR, a change below ACCEPTED will do. Else pins give way to
+# the next of FORCES, and at last all weights are lowered.
+CLOSE, ACCEPTED, FAR, MOST_ROUNDS = 5e-5, 1e-3, 2.0, 20
 REMEMBERED, DISTINCT = 6, 1e-6  # rounds; smaller relative differences of rounds are ignored
-BACK, MOST_RETURNS = 0.85, 12
+BACK, MOST_RETURNS, FORCES = 0.85, 12, (100.0, 20.0, 5.0)
 WEIGHTS = "A slider with {count} poses needs {count} finite weights, not {weights}."
 OTHER_DOMAIN = "Pose {number} has another cage than the sampled domain; pose the same domain."
 
@@ -144,15 +143,19 @@ class FrameSolver:
         at_constraints, at_transform = (
             PointValues(*(each[part] for each in base)) for part in (slice(own), slice(own, None))
         )
-        for number in range(MOST_RETURNS + 1):
-            share = BACK**number if number < MOST_RETURNS else 0.0
+        shares = [BACK**number for number in range(1, MOST_RETURNS)]
+        tried = [(1.0, force) for force in FORCES]
+        tried += [(share, FORCES[-1]) for share in (*shares, 0.0)]
+        for share, force in tried:
             blend = self.outline.blend(at_transform, share * weights)
-            found = self._alternate(share * weights, blend, at_constraints)
+            found = self._alternate(share * weights, blend, at_constraints, force)
             if found.beyond <= ACCEPTED:
                 break
         return found._replace(share=share)
 
-    def _alternate(self, weights: Floats, blend: OutlineBlend, base: PointValues) -> FrameSolution:
+    def _alternate(
+        self, weights: Floats, blend: OutlineBlend, base: PointValues, force: float
+    ) -> FrameSolution:
         """Alternate between curb and constraints until neither changes the other."""
         constraints, holes = self.constraints, len(self.outline.transform.loops) - 1
         if constraints is None:
@@ -164,9 +167,7 @@ class FrameSolver:
 
         # The state is what the curb is for: a constant on each hole, and the unknowns of h. On a
         # hole ln |f_z| stays below u + r by a constant (`engine.dirichlet`), which must vanish.
-        nothing = constraints.corrector.variables.nothing
-        start = PointSolution(x=nothing, shift=0j, target_errors=np.empty(0), steps=0)
-        found = constraints.step(base, weights, 1.0, None, start)
+        found = constraints.step(base, weights, 1.0, None, None, force)
         state, step = np.append(np.zeros(holes), found.x), np.zeros(holes + len(found.x))
         states: list[Floats] = []
         misses: list[Floats] = []
@@ -180,7 +181,7 @@ class FrameSolver:
             if densities is not None:
                 lacking = densities.lacking[:, 0]
             start = replace(found, x=x)
-            found = constraints.step(base, weights, blend.rho, densities, start)
+            found = constraints.step(base, weights, blend.rho, densities, start, force)
             miss = np.append(-lacking, found.x - x)
             off = float(np.abs(np.append(lacking, real_parts(found.x - x))).max())
             beyond = off + curb.excess if found.is_finished else np.inf
