@@ -24,8 +24,6 @@ READ = {
 REPLACED_LONG = {
     "app/document/layer.py",
     "app/document/model.py",
-    "app/motion/caches/inbetween_cache.py",
-    "app/motion/inbetweens/pose_sampler.py",
 }
 # Tables are looked things up in, and read by nobody from end to end.
 TABLES = {

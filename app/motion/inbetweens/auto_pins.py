@@ -6,16 +6,20 @@ import numpy as np
 
 from app.document import (
     Clip,
+    Layer,
     PinnedSegment,
     Variant,
     clip_segments,
     pinned_segments,
     pose_segments,
+    with_stiffness,
 )
-from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
+from app.motion.inbetweens.content_cache import digest
+from app.motion.inbetweens.outline_cache import SAMPLED, nbytes_or_0
+from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.segment_keys import segment_key
 from engine.arrays import Complexes, Floats
-from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.corrector import PointCorrector, build_corrector
 from engine.geometry import diameter
 from engine.interpolation import (
     CorrectionSeries,
@@ -24,7 +28,9 @@ from engine.interpolation import (
     SegmentPins,
     solve_pins,
     solve_pins_at,
+    value_points_for_corrections,
 )
+from engine.maps import Boundary
 
 BESIDE = 0.03  # fraction of the diameter: closer to the anchor or a pinned handle, handles yield
 FIRM = 0.01  # a handle with firmness above 1 minus this has firmness 1
@@ -167,3 +173,33 @@ def firmness_at(distances: Floats) -> Floats:
     far = -np.expm1(-((distances / BESIDE) ** 2))
     firmness: Floats = np.where(far > 1 - FIRM, 1.0, far)
     return firmness
+
+
+def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
+    """Return the corrector of a domain's frames with targets for points (m,)."""
+    content = digest(*boundary.loops, *boundary.span.cages, boundary.weights, points)
+    make = partial(build_corrector, boundary, anchor, points)
+    return SAMPLED.find(("corrector", content, anchor), make, nbytes_or_0)
+
+
+def prepare_corrector(
+    layer: Layer, sibling: PoseSampler, more: Complexes | None = None
+) -> tuple[PointCorrector, PoseSampler]:
+    """Return the corrector of a layer's handles, and a sampler with the values that it needs.
+
+    The sibling has the same outline, cage and anchor. `more`, complex128 (p,), are further points
+    to correct, after the handles.
+    """
+    sites = sibling.sites
+    points = np.array([each.position for each in layer.handles], dtype=np.complex128)
+    if more is not None:
+        points = np.append(points, more)
+    corrector = corrector_for(with_stiffness(layer, sites.boundary), sites.anchor, points)
+    sampler = PoseSampler(
+        layer.domain,
+        anchor=layer.anchor,
+        points=points,
+        values_at=value_points_for_corrections(corrector),
+        sibling=sibling,
+    )
+    return corrector, sampler

@@ -19,9 +19,9 @@ from app.document import (
     slider_poses,
     stiffness_source,
 )
-from app.motion.inbetweens.auto_pins import AutoPins, firmness_at
+from app.motion.inbetweens.auto_pins import AutoPins, firmness_at, prepare_corrector
 from app.motion.inbetweens.keyframe_motion import KeyframeMotion
-from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
+from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.motion.inbetweens.secondary_motion import SecondaryMotion, SecondaryTargets
 from app.motion.inbetweens.segment_keys import frame_content

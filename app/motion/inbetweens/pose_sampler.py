@@ -1,20 +1,21 @@
 """Samples of poses at points of a domain, and in-betweens there."""
 
 import threading
-from collections.abc import Callable, Sequence, Set as AbstractSet
+from collections.abc import Sequence, Set as AbstractSet
 from functools import partial
-from typing import Protocol
 
 import numpy as np
 
-from app.document import Layer, Pose, PoseSegment, Variant, with_stiffness
-from app.errors import report_progress
-from app.motion.inbetweens.content_cache import ContentCache, digest
-from app.motion.inbetweens.secondary_correction import SecondaryCorrection
-from app.motion.inbetweens.segment_keys import SegmentKey
+from app.document import Pose, PoseSegment, Variant
+from app.motion.inbetweens.content_cache import digest
+from app.motion.inbetweens.outline_cache import (
+    SAMPLED,
+    OutlineCache,
+    have_same_outline,
+    nbytes_or_0,
+)
 from engine.arrays import Complexes, Indices, freeze, nbytes_of
-from engine.deform.correction.corrector import PointCorrector, build_corrector
-from engine.dirichlet import Extension, HilbertTransform
+from engine.dirichlet import Extension
 from engine.domain import MeshedDomain
 from engine.interpolation import (
     BLENDS,
@@ -34,130 +35,10 @@ from engine.interpolation import (
     prepare_inbetweens,
     sample_domain,
     sample_keyframes,
-    value_points_for_corrections,
 )
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
-from engine.sliders import FrameSolution, FrameSolver, SliderPoses
-
-# Caches of sampled outlines and keyframes, in bytes. Values that layers hold take no additional
-# memory here. Transforms are the slowest to compute, so they have a cache of their own.
-_SAMPLED = ContentCache(96 * 2**20)
-_TRANSFORMS = ContentCache(32 * 2**20)
-
-
-MAX_PINNED = 512  # segments with cached pins per outline
-MAX_SLID = 1024  # frames with sliders per outline
-
-
-class _Sized(Protocol):
-    @property
-    def nbytes(self) -> int: ...
-
-
-def _nbytes(value: _Sized | None) -> int:
-    return 0 if value is None else value.nbytes
-
-
-def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
-    """Return the corrector of a domain's frames with targets for points (m,)."""
-    content = digest(*boundary.loops, *boundary.span.cages, boundary.weights, points)
-    make = partial(build_corrector, boundary, anchor, points)
-    return _SAMPLED.find(("corrector", content, anchor), make, _nbytes)
-
-
-def prepare_corrector(
-    layer: Layer, sibling: "PoseSampler", more: Complexes | None = None
-) -> tuple[PointCorrector, "PoseSampler"]:
-    """Return the corrector of a layer's handles, and a sampler with the values that it needs.
-
-    The sibling has the same outline, cage and anchor. `more`, complex128 (p,), are further points
-    to correct, after the handles.
-    """
-    sites = sibling.sites
-    points = np.array([each.position for each in layer.handles], dtype=np.complex128)
-    if more is not None:
-        points = np.append(points, more)
-    corrector = corrector_for(with_stiffness(layer, sites.boundary), sites.anchor, points)
-    sampler = PoseSampler(
-        layer.domain,
-        anchor=layer.anchor,
-        points=points,
-        values_at=value_points_for_corrections(corrector),
-        sibling=sibling,
-    )
-    return corrector, sampler
-
-
-class OutlineCache:
-    """Data shared by the samplers of one outline and cage, computed on first use.
-
-    `corrections` of frames are cached by content, in the order of last use. `tangents` at smooth
-    keys are cached by poses and the other values that determine them. Access to both needs `guard`,
-    since several threads use them. `forget_transform` frees `nbytes` bytes.
-    """
-
-    def __init__(self, domain: MeshedDomain) -> None:
-        self._domain = domain
-        self._key = "transform", digest(*domain.loops, *domain.cages)
-        # A lock of its own, so that other threads wait for the transform only.
-        self._lock = threading.RLock()
-        self._transform: HilbertTransform | None = None
-        self.nbytes = 0
-        self.corrections: dict[object, SecondaryCorrection] = {}
-        self.tangents: dict[tuple[tuple[Pose, ...], InteriorKnot, Bounds, Variant], Tangent] = {}
-        self.guard = threading.Lock()
-        # With the poses whose ids are in the keys.
-        self._pins: dict[SegmentKey, tuple[CorrectionSeries, tuple[Pose, ...]]] = {}
-        self._slider_solutions: dict[object, FrameSolution] = {}
-
-    def find_pins(self, pair: SegmentKey) -> CorrectionSeries | None:
-        """Return the pins of a segment; None if they are not known."""
-        with self.guard:
-            known = self._pins.get(pair)
-        return None if known is None else known[0]
-
-    def pins_of(
-        self, pair: SegmentKey, poses: tuple[Pose, ...], solve: Callable[[], CorrectionSeries]
-    ) -> CorrectionSeries:
-        """Return the pins of a segment, solved if missing."""
-        with self.guard:
-            known = self._pins.pop(pair, None)
-        if known is None:
-            known = solve(), poses
-        with self.guard:
-            self._pins[pair] = known
-            while len(self._pins) > MAX_PINNED:
-                del self._pins[next(iter(self._pins))]
-        return known[0]
-
-    def slider_solution(self, key: object, solve: Callable[[], FrameSolution]) -> FrameSolution:
-        """Return the solution of a frame with sliders by its content, solved if missing."""
-        with self.guard:
-            known = self._slider_solutions.pop(key, None)
-        if known is None:
-            known = solve()
-        with self.guard:
-            self._slider_solutions[key] = known
-            while len(self._slider_solutions) > MAX_SLID:
-                del self._slider_solutions[next(iter(self._slider_solutions))]
-        return known
-
-    @property
-    def transform(self) -> HilbertTransform:
-        with self._lock:
-            if self._transform is None:
-                domain = self._domain
-                make = partial(HilbertTransform.on, domain, progress=report_progress)
-                self._transform = _TRANSFORMS.find(self._key, make, _nbytes)
-                self.nbytes = self._transform.nbytes
-            return self._transform
-
-    def forget_transform(self) -> None:
-        """Drop the transform, which can be computed again soon."""
-        with self._lock:
-            self._transform, self.nbytes = None, 0
-        _TRANSFORMS.forget(self._key)
+from engine.sliders import FrameSolver, SliderPoses
 
 
 class PoseSampler:
@@ -188,13 +69,12 @@ class PoseSampler:
         values_at: Complexes | None = None,
         sibling: "PoseSampler | None" = None,
     ) -> None:
-        if sibling is not None and not _have_same_outline(domain, sibling.domain):
+        if sibling is not None and not have_same_outline(domain, sibling.domain):
             sibling = None
         self.domain: MeshedDomain = domain
         self.anchor = anchor
-        mesh = domain.mesh
-        triangles = mesh.triangles if points is None else None
-        points = mesh.vertices if points is None else points
+        triangles = domain.mesh.triangles if points is None else None
+        points = domain.mesh.vertices if points is None else points
         # Content that determines the samples.
         content = digest(*domain.loops, *domain.cages, points, triangles, values_at)
         self._content = content, anchor
@@ -209,7 +89,7 @@ class PoseSampler:
                 values_at=() if values_at is None else values_at,
             )
 
-        self.sites: SampledDomain = _SAMPLED.find(
+        self.sites: SampledDomain = SAMPLED.find(
             ("sites", *self._content), prepare, partial(nbytes_of, but=(known,))
         )
         self._lock = threading.RLock()
@@ -229,7 +109,7 @@ class PoseSampler:
             if self._extension is None:
                 transform = self.known.transform
                 make = partial(transform.at, self.sites.paths.nodes, single=True)
-                self._extension = _SAMPLED.find(("extension", *self._content), make, _nbytes)
+                self._extension = SAMPLED.find(("extension", *self._content), make, nbytes_or_0)
                 self.extension_bytes = self._extension.nbytes
             return self._extension
 
@@ -237,7 +117,7 @@ class PoseSampler:
         """Drop the transform at the nodes, most of the memory of a layer that is not edited."""
         with self._extension_lock:
             self._extension, self.extension_bytes = None, 0
-        _SAMPLED.forget(("extension", *self._content))
+        SAMPLED.forget(("extension", *self._content))
 
     def keep_only(self, poses: AbstractSet[Pose]) -> None:
         """Drop the samples of other poses."""
@@ -258,8 +138,9 @@ class PoseSampler:
                     logs=pose.logs,
                 )
                 key = "samples", *self._content, digest(pose.phi, pose.psi, pose.logs)
-                sample = partial(_sampled, f, self.sites)
-                self._samples[pose] = _SAMPLED.find(key, sample, _nbytes)
+                self._samples[pose] = SAMPLED.find(
+                    key, lambda: sample_keyframes([f], self.sites)[0], nbytes_or_0
+                )
             return self._samples[pose]
 
     def inbetweens(
@@ -299,7 +180,7 @@ class PoseSampler:
         def make() -> SliderPoses:
             return SliderPoses.of([self.samples(pose) for pose in poses], turns, self.sites)
 
-        return _SAMPLED.find(("slider poses", *self._content, content), make, _nbytes)
+        return SAMPLED.find(("slider poses", *self._content, content), make, nbytes_or_0)
 
     def slider_solver(
         self,
@@ -320,7 +201,7 @@ class PoseSampler:
         transform = self.known.transform
         given = (maps, turns, self.sites, transform, bounds, pins)
         make = partial(FrameSolver.of, *given, is_anchored=is_anchored)
-        return _SAMPLED.find(key, make, _nbytes)
+        return SAMPLED.find(key, make, nbytes_or_0)
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Return whether a single in-between takes less time than the whole segment."""
@@ -400,18 +281,12 @@ class PoseSampler:
         """Prepare in-betweens; all samplers of the domain share the solution on the boundary."""
         if not variant.needs_transform:
             return prepare_inbetweens(variant, interval)
-        time_weights, maps = (
-            interval.keyframe_blend.time_weights,
-            [key.map for key in interval.keyframe_blend.keyframes],
-        )
-        content = digest(
-            *self.domain.loops,
-            *self.domain.cages,
-            *(each for f in maps for each in (f.phi, f.psi, f.logs)),
-        )
-        key = "residual", content, time_weights.ends, time_weights.one_sided, interval.bounds
+        weights, keys = interval.keyframe_blend.time_weights, interval.keyframe_blend.keyframes
+        maps = (each for key in keys for each in (key.map.phi, key.map.psi, key.map.logs))
+        content = digest(*self.domain.loops, *self.domain.cages, *maps)
+        key = "residual", content, weights.ends, weights.one_sided, interval.bounds
         solve = partial(BLENDS[variant].on_boundary, interval)
-        residual = _SAMPLED.find(key, solve, _nbytes)
+        residual = SAMPLED.find(key, solve, nbytes_or_0)
         return prepare_inbetweens(variant, interval._replace(residual=residual))
 
     def _interval(
@@ -423,14 +298,3 @@ class PoseSampler:
             bounds=bounds,
             transform=self.extension if variant.needs_transform else None,
         )
-
-
-def _have_same_outline(one: MeshedDomain, other: MeshedDomain) -> bool:
-    """Return whether two domains have the same loops and cages."""
-    first, second = ((*each.loops, *each.cages) for each in (one, other))
-    return len(first) == len(second) and all(map(np.array_equal, first, second))
-
-
-def _sampled(f: HarmonicMap, sites: SampledDomain) -> KeyframeSamples:
-    (samples,) = sample_keyframes([f], sites)
-    return samples

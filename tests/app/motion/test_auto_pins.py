@@ -65,7 +65,7 @@ def test_motion_is_the_closed_form_without_auto_pins():
 
 
 def test_a_segment_is_solved_once_at_vertices_and_handles(monkeypatch):
-    monkeypatch.setattr(pose_sampler, "_SAMPLED", ContentCache(2**26))
+    monkeypatch.setattr(pose_sampler, "SAMPLED", ContentCache(2**26))
     document = posed(variant="metric")
     clip = clip_of(document, 0)
     blend, called = BLENDS[clip.layer.variant], []

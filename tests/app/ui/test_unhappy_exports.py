@@ -30,7 +30,7 @@ from app.editor.parts.dialogs import Question
 from app.export.writers.gif import GifWriter
 from app.export.writers.png import PngSequence
 from app.export.writers.video import VideoWriter
-from app.motion import evaluator
+from app.motion import layer_stages
 from app.motion.inbetweens import pose_sampler
 from app.storage import SAME_FILE
 from app.storage.assets import sample_images
@@ -288,7 +288,10 @@ def test_cancel_is_answered_at_once_while_it_is_prepared(window, tmp_path, held,
     settings = ExportSettings(format=format_, size=SIZE, framing="canvas", frames=few)
     editing.edit_document(session, scene_commands.set_export(settings))
     window.settle()
-    where = {"sites": (evaluator, "PoseSampler"), "intervals": (pose_sampler, "prepare_inbetweens")}
+    where = {
+        "sites": (layer_stages, "PoseSampler"),
+        "intervals": (pose_sampler, "prepare_inbetweens"),
+    }
     worker = held(*where[stage])
     window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
