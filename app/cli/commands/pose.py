@@ -74,8 +74,9 @@ It has 2 to 8 poses. Each is dragged from the undeformed drawing, with "targets"
 as in a key, and "turns", further whole turns. A handle that no pose moves stays. The limits hold
 for all values, also for 30 % beyond the outer poses. A pad has two numbers, "at": [0, 1] and
 "value": [0.5, 1], and poses on a grid of at most 5 by 5. Keys have ease and passing as above.
-"value" is used without keys, and "delay" is in frames. With "driver": "head", the slider of this
-name in the layer "head" gives the value, and several layers turn together.
+"value" is used without keys, and "delay" is in frames. With "spring": {"preset": "hair"}, or a
+frequency and a damping, the value swings. With "driver": "head", the slider of this name in the
+layer "head" gives the value, and several layers turn together.
 
 A stretch of time repeats with
 

@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 
 from app.document.channels.kinds import LARGEST_VALUE
+from app.document.channels.springs import require_oscillator
 from app.document.checks import LAST_FRAME, NOTHING, Unknown, require
 from app.document.keyframe import MAX_REVOLUTIONS
 from app.texts import N_
@@ -39,6 +40,8 @@ class Slider:
     # Id of a layer whose slider of the same name gives the value; None is the own value.
     driver: int | None = None
     delay: int = 0  # in frames; wraps around in a loop
+    # Frequency in Hz and damping of a spring by which the value swings; None does not swing.
+    spring: tuple[float, float] | None = None
     enabled: bool = True
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -97,6 +100,15 @@ class Slider:
             largest=LAST_FRAME,
             delay=self.delay,
         )
+
+        if self.spring is not None:
+            frequency, damping = self.spring
+            require_oscillator(frequency, damping)
+            require(
+                damping > 0,
+                N_("The spring of the slider {name!r} needs a damping above 0."),
+                name=name,
+            )
 
     @cached_property
     def axes(self) -> tuple[list[float], list[float]]:

@@ -13,6 +13,25 @@ MAX_LAG = 10_000.0  # frames
 MAX_STRENGTH = 10.0
 
 
+def require_oscillator(frequency: float, damping: float) -> None:
+    """Refuse a frequency or a damping out of range."""
+    require(
+        0 < frequency <= MAX_SPRING_FREQUENCY,
+        N_(
+            "The frequency of a spring must be above 0 and at most {largest:,.0f} Hz, not "
+            "{frequency:g}."
+        ),
+        largest=MAX_SPRING_FREQUENCY,
+        frequency=frequency,
+    )
+    require(
+        0 <= damping <= MAX_DAMPING,
+        N_("The damping of a spring must be from 0 to {largest:g}, not {damping:g}."),
+        largest=MAX_DAMPING,
+        damping=damping,
+    )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spring:
     """A damped oscillator that moves a handle, driven by the motion of the handle's position."""
@@ -30,21 +49,7 @@ class Spring:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(
-            0 < self.frequency <= MAX_SPRING_FREQUENCY,
-            N_(
-                "The frequency of a spring must be above 0 and at most {largest:,.0f} Hz, not "
-                "{frequency:g}."
-            ),
-            largest=MAX_SPRING_FREQUENCY,
-            frequency=self.frequency,
-        )
-        require(
-            0 <= self.damping <= MAX_DAMPING,
-            N_("The damping of a spring must be from 0 to {largest:g}, not {damping:g}."),
-            largest=MAX_DAMPING,
-            damping=self.damping,
-        )
+        require_oscillator(self.frequency, self.damping)
         require(
             0 <= self.lag <= MAX_LAG,
             N_("The lag of a spring must be from 0 to {largest:,.0f} frames, not {lag:g}."),

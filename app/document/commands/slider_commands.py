@@ -1,7 +1,6 @@
 """Commands on the pose sliders of a layer."""
 
 from dataclasses import replace
-from typing import Any
 
 from app.document.channels.kinds import SLIDER
 from app.document.channels.sliders import Slider, SliderPose
@@ -29,13 +28,11 @@ def change_slider(layer: Layer, name: str, slider: Slider) -> Layer:
 @layer_command(_("Set slider"))
 def set_slider_value(layer: Layer, name: str, value: complex) -> Layer:
     """Set the value of a slider without keys."""
-    return _with_slider(layer, name, value=value)
-
-
-@layer_command(_("Drive slider"))
-def drive_slider(layer: Layer, name: str, driver: int | None) -> Layer:
-    """Let another layer's slider of the same name give the value; None is the own value."""
-    return _with_slider(layer, name, driver=driver)
+    old = layer.slider(name)
+    changed = replace(old, value=value)
+    if changed == old:
+        return layer
+    return replace(layer, sliders=tuple(changed if each is old else each for each in layer.sliders))
 
 
 @layer_command(_("Delete slider"))
@@ -61,14 +58,7 @@ def set_slider_pose(layer: Layer, name: str, at: complex, pose: Pose) -> Layer:
     poses = [each for each in slider.poses if each.at != at]
     poses.append(SliderPose(at=at, pose=added.name))
     poses.sort(key=lambda each: (each.at.imag, each.at.real))
-    kept = replace(layer, library=(*layer.library, added))
-    return _with_slider(kept, name, poses=tuple(poses))
-
-
-def _with_slider(layer: Layer, name: str, **changes: Any) -> Layer:
-    """Return the layer with other values of a slider."""
-    old = layer.slider(name)
-    changed = replace(old, **changes)
-    if changed == old:
-        return layer
-    return replace(layer, sliders=tuple(changed if each is old else each for each in layer.sliders))
+    sliders = tuple(
+        replace(each, poses=tuple(poses)) if each is slider else each for each in layer.sliders
+    )
+    return replace(layer, library=(*layer.library, added), sliders=sliders)

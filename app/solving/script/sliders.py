@@ -8,10 +8,11 @@ from app.errors import LissomError
 from app.solving.script.channels import read_tangent_keys
 from app.solving.script.fields import read_fields
 from app.solving.script.keys import POSE_FIELDS, PoseKey, read_pose
+from app.solving.script.tracks import read_oscillator
 from app.storage import VALUE, as_list, as_text, as_whole, located
 from app.texts import N_, _
 
-FIELDS = ("name", "poses", "keys", "value", "driver", "delay")
+FIELDS = ("name", "poses", "keys", "value", "driver", "delay", "spring")
 TWICE = N_("{where}: there is another slider {name!r}; rename one of them")
 ONE_NUMBER = N_("{where}: the slider {name!r} is no pad, so its value is one number")
 
@@ -60,6 +61,7 @@ def _slider(content: object, where: str, handles: Collection[str]) -> ScriptSlid
         poses=tuple(poses),
         value=VALUE.read(fields.get("value", 0), f"{where}.value"),
         delay=as_whole(fields.get("delay", 0), f"{where}.delay"),
+        spring=_spring(fields["spring"], f"{where}.spring") if "spring" in fields else None,
     )
     keys: tuple[Key[complex], ...] = ()
     if "keys" in fields:
@@ -69,3 +71,10 @@ def _slider(content: object, where: str, handles: Collection[str]) -> ScriptSlid
             raise LissomError(_(ONE_NUMBER).format(where=where, name=slider.name))
     driver = as_text(fields["driver"], f"{where}.driver") if "driver" in fields else None
     return ScriptSlider(slider=slider, poses=tuple(keyed), keys=keys, driver=driver)
+
+
+def _spring(content: object, where: str) -> tuple[float, float]:
+    """Return a frequency and a damping, given or by the name of a preset."""
+    fields = read_fields(content, where, ("preset", "frequency", "damping"))
+    given = read_oscillator(fields, where)
+    return given["frequency"], given["damping"]

@@ -174,11 +174,17 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
 
 def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
     spring = read_fields(content, where, SPRING_FIELDS)
-    given = {
-        name: as_number(spring[name], f"{where}.{name}")
-        for name in SPRING_NUMBERS
-        if name in spring
-    }
+    given = read_oscillator(spring, where, SPRING_NUMBERS)
+    handle = _number(spring["handle"], f"{where}.handle", handles)
+    root = _number(spring["root"], f"{where}.root", handles) if "root" in spring else None
+    return located(where, Spring, handle=handle, root=root, **given)
+
+
+def read_oscillator(
+    spring: JsonObject, where: str, names: Sequence[str] = SPRING_NUMBERS[:2]
+) -> dict[str, float]:
+    """Return the numbers of a spring by their names, some of them those of a preset."""
+    given = {name: as_number(spring[name], f"{where}.{name}") for name in names if name in spring}
     if "preset" in spring:
         preset = as_text(spring["preset"], f"{where}.preset")
         if preset not in SPRING_PRESETS:
@@ -190,9 +196,7 @@ def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
         given = dict(zip(("frequency", "damping"), SPRING_PRESETS[preset], strict=True)) | given
     elif not {"frequency", "damping"} <= given.keys():
         raise LissomError(_(NO_PRESET).format(where=where, presets=", ".join(SPRING_PRESETS)))
-    handle = _number(spring["handle"], f"{where}.handle", handles)
-    root = _number(spring["root"], f"{where}.root", handles) if "root" in spring else None
-    return located(where, Spring, handle=handle, root=root, **given)
+    return given
 
 
 def _numbers(track: JsonObject, where: str, handles: Mapping[str, int]) -> tuple[int, ...]:

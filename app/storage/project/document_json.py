@@ -182,6 +182,11 @@ SLIDER = record(
     Field("value", VALUE, default=0j),
     Field("driver", optional(WHOLE), default=None),
     Field("delay", WHOLE, default=0),
+    Field(
+        "spring",
+        optional(pair(NUMBER, NUMBER, N_("a frequency and a damping"))),
+        default=None,
+    ),
     Field("enabled", FLAG, default=True),
 )
 TRACK = record(

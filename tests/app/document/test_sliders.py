@@ -97,6 +97,22 @@ def test_slider_repeats_in_a_loop():
     assert slider_weights_at(clip, 10) == pytest.approx(slider_weights_at(clip, 58))
 
 
+@pytest.mark.parametrize("loop", [False, True])
+def test_slider_with_a_spring_swings_about_its_value(loop):
+    springy = replace(TURN, spring=(2.0, 0.2))
+    document = replace(keyed((0, -1), (6, 1), sliders=(springy,)), loop=loop)
+    clip, plain = clip_of(document, 0), clip_of(replace(keyed((0, -1), (6, 1)), loop=loop), 0)
+    (swung,), (still,) = clip.sliders, plain.sliders
+    found = [slider_value_at(clip, swung, frame).real for frame in range(49)]
+    driving = [slider_value_at(plain, still, frame).real for frame in range(49)]
+    assert max(found) > 1.1
+    assert found[4] < driving[4] - 0.05
+    if loop:
+        assert found[0] == pytest.approx(found[-1])
+    else:
+        assert abs(found[-1] - driving[-1]) < 0.1
+
+
 def test_slider_without_keys_has_its_own_value():
     document = document_with(replace(TURN, value=1 + 0j))
     assert slider_weights_at(clip_of(document, 0), 7) == (0.0, 1.0)
@@ -144,7 +160,11 @@ def test_library_poses_of_sliders_are_renamed_and_not_deleted():
 
 
 def test_sliders_come_back_from_a_file(tmp_path):
-    document = keyed((0, -1), (20, 1), sliders=(TURN, replace(PAD, value=0.5 + 1j, delay=3)))
+    document = keyed(
+        (0, -1),
+        (20, 1),
+        sliders=(replace(TURN, spring=(2.0, 0.2)), replace(PAD, value=0.5 + 1j, delay=3)),
+    )
     save_project(tmp_path / "sliders.lissom", document)
     layer = load_project(tmp_path / "sliders.lissom").layers[0]
     assert layer.sliders == document.layers[0].sliders
@@ -164,6 +184,8 @@ BAD = {
     "a hole": ({"poses": poses_at(0, 1, 1j)}, "no pose at (1, 1); its poses must fill a grid"),
     "no name": ({"name": " "}, "A slider needs a name."),
     "late": ({"delay": -1}, "delay of a slider must be from 0 to 999,999 frames, not -1."),
+    "still": ({"spring": (2.0, 0.0)}, "The spring of the slider 'turn' needs a damping above 0."),
+    "no swing": ({"spring": (0.0, 0.5)}, "The frequency of a spring must be above 0"),
     "turns": ({"poses": (SliderPose(at=0j, pose=None, turns=99), *poses_at(1))}, "at most 20"),
 }
 

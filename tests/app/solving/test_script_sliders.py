@@ -34,6 +34,7 @@ PAD = {
     ],
     "keys": [{"frame": 0, "value": [0, 0]}, {"frame": 20, "value": [1, 0.5], "passing": "stop"}],
     "delay": 2,
+    "spring": {"preset": "hair"},
 }
 
 
@@ -60,7 +61,8 @@ def test_script_makes_sliders_with_poses_and_keys(tmp_path):
         (0, None),
         (1, "turn 1"),
     ]
-    assert (look.is_pad, look.delay) == (True, 2)
+    assert (look.is_pad, look.delay, look.spring) == (True, 2, (2.2, 0.35))
+    assert turn.spring is None
     keys = layer.keys_of(SLIDER, "look")
     assert [key.value for key in keys] == [0, 1 + 0.5j]
     assert keys[1].tangent_mode is TangentMode.STOP

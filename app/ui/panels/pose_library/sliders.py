@@ -2,13 +2,15 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import expm1, isqrt
+from math import expm1
+from typing import Any
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import (
     BEYOND,
     SLIDER,
+    SPRING_PRESETS,
     Channel,
     Document,
     Layer,
@@ -23,8 +25,10 @@ from app.editor.actions import editing, playback
 from app.editor.actions.timing.channel_keys import set_channel_value
 from app.editor.poses import sliders
 from app.motion import LayerFrame
-from app.texts import _
+from app.texts import _, ngettext
+from app.ui.panels.handle_settings.spring import PRESET_NAMES
 from app.ui.panels.key_diamond import diamond_room, draw_key_diamond
+from app.ui.panels.pose_library.new_slider import NEW_SLIDER, draw_new_slider
 from app.ui.style.sliders import Scale, number_field, slider_track
 from app.ui.style.theme import SMALL, Look, colour_u32, pixel_density
 from app.ui.style.widgets import (
@@ -36,10 +40,10 @@ from app.ui.style.widgets import (
     push_text_size,
     shorten_text,
     small_text,
-    text_button,
 )
 
 TILE, PAD, FIELD = 2.9, 9.0, 3.6  # em: sides of a thumbnail and of a pad, width of a number
+DELAYS = (0, 1, 2, 3, 4, 6, 8, 12)
 REACHED = 1e-3  # change of ln |f_z| that counts as curbed
 # From a layer's id, a pose and a size in pixels to a texture.
 Pictures = Callable[[int, Pose, int], int | None]
@@ -55,8 +59,8 @@ def draw_sliders(
     hint = _("New slider from poses")
     reason = _("Make the layer posable first.") if layer.still else None
     if icon_button(look, icons.ICON_FA_PLUS, "new slider", hint, reason=reason):
-        imgui.open_popup("poses of a slider")
-    actions = _draw_new(project)
+        imgui.open_popup(NEW_SLIDER)
+    actions = draw_new_slider(project)
     for each in layer.sliders:
         imgui.push_id(each.name)
         actions += _draw_slider(look, project, each, frame, pictures)
@@ -65,42 +69,6 @@ def draw_sliders(
         actions += _draw_state(look, project.layer_runtime.shown)
     else:
         small_text(look, _("A slider blends poses: a head turn, a smile, a breath."))
-    return actions
-
-
-def _draw_new(project: Project) -> list[Action]:
-    """Draw the popup in which the poses of a new slider are chosen."""
-    if not imgui.begin_popup("poses of a slider"):
-        return []
-    actions: list[Action] = []
-    chosen: list[str | None] = []
-    imgui.text_unformatted(_("Poses of the new slider"))
-    names = (None, *(kept.name for kept in project.layer.library))
-    for name in names:
-        text = _("Undeformed drawing") if name is None else name
-        is_on = name in project.pose_edits.slider_poses
-        if imgui.checkbox(f"{text}###pose {name}", is_on)[0]:
-            actions.append(do(sliders.toggle_slider_pose, name))
-        chosen += [name] if is_on else []
-    if len(chosen) == 3 and chosen[0] is None:
-        # The drawing is between both poses, at 0.
-        chosen = [chosen[1], None, chosen[2]]
-    reason = None if len(chosen) > 1 else _("Choose at least two poses.")
-    if text_button(_("Add slider"), reason=reason):
-        actions.append(do(sliders.add_slider, tuple(chosen)))
-        imgui.close_current_popup()
-    imgui.same_line()
-    is_square = len(chosen) > 3 and isqrt(len(chosen)) ** 2 == len(chosen)
-    reason = None if is_square else _("A pad needs 4, 9, 16 or 25 poses, row by row.")
-    if text_button(_("Add pad"), reason=reason):
-        actions.append(do(sliders.add_slider, tuple(chosen), is_pad=True))
-        imgui.close_current_popup()
-    imgui.same_line()
-    hint = _("From the undeformed drawing to the pose that the viewport shows")
-    if text_button(_("Use shown pose"), hint=hint):
-        actions.append(do(sliders.begin_slider))
-        imgui.close_current_popup()
-    imgui.end_popup()
     return actions
 
 
@@ -138,8 +106,7 @@ def _draw_head(look: Look, project: Project, slider: Slider) -> list[Action]:
     taken = (each.name for each in layer.sliders if each is not slider)
     name = name_popup(look, "name", slider.name, taken, _("Another slider has this name."))
     if name is not None:
-        renamed = replace(slider, name=name)
-        actions.append(do(editing.edit_layer, slider_commands.change_slider, slider.name, renamed))
+        actions.append(_adjust(slider, name=name))
     if slider.driver is None:
         align_right(2.3 * imgui.get_frame_height())
         is_wide = (layer.id, slider.name) in project.pose_edits.wide_sliders
@@ -170,13 +137,30 @@ def _draw_menu(document: Document, layer: Layer, slider: Slider) -> list[Action]
         ]
         for identity, name in choices:
             if imgui.menu_item(f"{name}###{identity}", "", slider.driver == identity)[0]:
-                command = slider_commands.drive_slider
-                actions.append(do(editing.edit_layer, command, slider.name, identity))
+                actions.append(_adjust(slider, driver=identity))
+        imgui.end_menu()
+    if imgui.begin_menu(_("Spring")):
+        springs: list[tuple[str, tuple[float, float] | None]] = [(_("None"), None)]
+        springs += [(PRESET_NAMES[name], spring) for name, spring in SPRING_PRESETS.items()]
+        for name, spring in springs:
+            if imgui.menu_item(name, "", slider.spring == spring)[0]:
+                actions.append(_adjust(slider, spring=spring))
+        imgui.end_menu()
+    if imgui.begin_menu(_("Delay")):
+        for frames in DELAYS:
+            text = ngettext("{frames} frame", "{frames} frames", frames).format(frames=frames)
+            if imgui.menu_item(text, "", slider.delay == frames)[0]:
+                actions.append(_adjust(slider, delay=frames))
         imgui.end_menu()
     imgui.end_popup()
     if asks:
         imgui.open_popup("name")
     return actions
+
+
+def _adjust(slider: Slider, **changes: Any) -> Action:
+    changed = replace(slider, **changes)
+    return do(editing.edit_layer, slider_commands.change_slider, slider.name, changed)
 
 
 def _range(places: list[float], room: float) -> tuple[float, float]:
