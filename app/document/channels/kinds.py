@@ -51,7 +51,7 @@ def require_value(value: complex) -> None:
         abs(value) <= LARGEST_VALUE,
         N_("The value of a slider must be at most {largest:,.0f}, not {value}."),
         largest=LARGEST_VALUE,
-        value=value,
+        value=f"{abs(value):g}",
     )
 
 

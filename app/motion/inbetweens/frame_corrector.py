@@ -7,7 +7,6 @@ same layer thus find earlier results.
 import threading
 from collections.abc import Callable, Iterable
 from copy import copy
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +21,7 @@ from app.document import (
 from app.motion.inbetweens.auto_pins import AutoPins, firmness_at, prepare_corrector
 from app.motion.inbetweens.keyframe_motion import KeyframeMotion
 from app.motion.inbetweens.pose_sampler import PoseSampler
-from app.motion.inbetweens.secondary_correction import SecondaryCorrection
+from app.motion.inbetweens.secondary_correction import SecondaryCorrection, SolvedSliders
 from app.motion.inbetweens.secondary_motion import SecondaryMotion, SecondaryTargets
 from app.motion.inbetweens.segment_keys import frame_content
 from app.motion.inbetweens.spring_offsets import ParentMotion
@@ -133,7 +132,7 @@ class FrameCorrector:
             wanted = self._own.targets_at(frame, base.places[:count], base.fz[:count], self._places)
             if wanted is None:
                 return alone
-            return replace(self._solve_correction(frame, base, wanted), sliders=sliders)
+            return self._solve_correction(frame, base, wanted, sliders)
 
     @property
     def run_up(self) -> int:
@@ -171,9 +170,13 @@ class FrameCorrector:
         return evaluate_base(inbetweens, self._corrector, time)
 
     def _solve_correction(
-        self, frame: float, base: CorrectionBase, wanted: SecondaryTargets
+        self,
+        frame: float,
+        base: CorrectionBase,
+        wanted: SecondaryTargets,
+        sliders: SolvedSliders | None,
     ) -> SecondaryCorrection:
-        """Return the correction that brings the handles to their targets."""
+        """Return the correction that brings the handles of a base with sliders to their targets."""
         targets, bounds = self._targets(base, wanted), self.clip.layer.widest_bounds
 
         def solve() -> SecondaryCorrection:
@@ -184,6 +187,7 @@ class FrameCorrector:
             tracked = [i for i, handle in enumerate(handles) if handle.id in wanted.tracked]
             reached = DistortionRange(*found.reached)
             return SecondaryCorrection(
+                sliders=sliders,
                 series=found.known,
                 target_errors={handles[i].id: float(found.target_errors[i]) for i in tracked},
                 targets={handles[i].id: complex(wanted.positions[i]) for i in tracked},

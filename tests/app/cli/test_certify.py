@@ -176,6 +176,8 @@ def test_tracked_frames_are_judged_with_the_same_tolerance(reached, proven, verd
         short=(),
         looked_at=4,
         left_out=0,
+        slid=0,
+        curbed=0.0,
     )
     assert Report(keys=(), segments=(), corrected=tracked).corrected_verdict == verdict
 
