@@ -16,6 +16,7 @@ from documents import altered
 from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 from pygltflib import GLTF2
+from slid_poses import slid
 from still_poses import posed
 
 from app.document import (
@@ -146,6 +147,14 @@ def test_handles_that_stay_do_so_in_a_model(tmp_path):
     assert pinned_handles(clip_of(document, 0)).any()
     times = np.random.default_rng(2).uniform(0, 10 / document.fps, 4)
     assert largest_distance(read(tmp_path / "a.glb"), document, times) <= TOLERANCE
+
+
+def test_sliders_move_a_model(tmp_path):
+    frames = FrameRange(0, 10)
+    document, _ = exported(replace(slid(-1, 1.2), frames=frames), tmp_path / "a.glb")
+    gltf = read(tmp_path / "a.glb")
+    assert largest_distance(gltf, document, [0.0, 0.13, 0.35]) <= TOLERANCE
+    assert np.abs(played(gltf, 0, 0.0) - played(gltf, 0, 0.4)).max() > 10
 
 
 def test_the_giraffe_is_small(giraffe):

@@ -1,20 +1,15 @@
 """Pose sliders in the motion of layers: exact poses, pins, limits, tracks on top, certificates."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from slid_poses import NOD, slid, slider
 from still_poses import animate, dragged, drawing, posed, with_layer
 
 from app.document import (
-    SLIDER,
-    FrameRange,
     Keyframe,
-    LibraryPose,
-    Slider,
-    SliderPose,
     Track,
     TrackKey,
     Variant,
@@ -29,27 +24,8 @@ from app.reports import Verdict, certify_clip
 from app.solving import Rig, fit_shown_pose
 from engine.maps import Bounds
 
-MOVED = {"up": 1, "down": 2}  # moves of the blob's top; its other handles stay
 PINNED = {"left", "middle", "right"}
 TOP = 3
-
-
-def slider(*places, **changes):
-    poses = tuple(SliderPose(at=complex(at), pose=pose) for at, pose in places)
-    return Slider(name="nod", poses=poses, **changes)
-
-
-NOD = slider((-1, "down"), (0, None), (1, "up"))
-
-
-@cache
-def slid(*values, document=None, slider=NOD, **changes):
-    """A document whose slider has these values at frames 10 apart."""
-    document = document or replace(drawing(), frames=FrameRange(0, 40))
-    library = tuple(LibraryPose(name=name, pose=dragged(number)) for name, number in MOVED.items())
-    keys = tuple(SLIDER.key(10 * number, complex(value)) for number, value in enumerate(values))
-    channels = {(SLIDER.name, "nod"): keys}
-    return with_layer(document, library=library, sliders=(slider,), channels=channels, **changes)
 
 
 def positions(document, frame):
