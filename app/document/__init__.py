@@ -231,10 +231,12 @@ from app.document.queries.material.boundary_stiffness import (
     stiffness_source as stiffness_source,
     with_stiffness as with_stiffness,
 )
-from app.document.queries.material.local_limits import (
-    limb_shapes as limb_shapes,
-    limits_along as limits_along,
+from app.document.queries.material.limbs import (
+    LimbChain as LimbChain,
+    Limbs as Limbs,
+    find_limbs as find_limbs,
 )
+from app.document.queries.material.local_limits import limits_along as limits_along
 from app.document.queries.memo import memoized_on as memoized_on
 from app.document.queries.pose_tangents import (
     PoseSegment as PoseSegment,
@@ -260,7 +262,7 @@ from app.document.rig.applied_motion import (
     UnreadMotion as UnreadMotion,
     require_motions as require_motions,
 )
-from app.document.rig.chains import Bone as Bone, Chain as Chain, find_chains as find_chains
+from app.document.rig.chains import Bone as Bone
 from app.document.rig.mirror_names import (
     PAIRS as PAIRS,
     SidePairs as SidePairs,

@@ -56,6 +56,13 @@ def solve_pose(rig: Rig, start: Pose, key: PoseKey, where: str) -> tuple[Pose, l
     hands = tuple(BoundedPull((identity,), key.pull) for identity in named)
     drag = DragSolver.begin(rig, start).step_towards(targets, MOST_STEPS, hands)
     target_errors = measure_target_errors(layer, drag.make_pose(targets))
+    notices += [
+        _(
+            "{where}: {handle!r} is {error:.1f} px from its target, beyond the reach of its bones"
+        ).format(where=where, handle=layer.handle(identity).name, error=error)
+        for identity, error in drag.out_of_reach(targets).items()
+        if identity in named
+    ]
     drag, released = drag.release(targets, hands)
     left = {**targets, **released}
     pose = drag.step_towards(left, MOST_STEPS).make_pose(left)

@@ -6,6 +6,10 @@ proof that the in-betweens keep their bounds.
 Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 
+from engine.interpolation.added.pins.bones import (
+    ChainOfBones as ChainOfBones,
+    SegmentBones as SegmentBones,
+)
 from engine.interpolation.added.pins.evaluated import SpanBasis as SpanBasis
 from engine.interpolation.added.pins.pinning import (
     CorrectionBase as CorrectionBase,

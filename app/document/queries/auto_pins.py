@@ -41,7 +41,7 @@ def pinned_handles(clip: Clip) -> Booleans:
 
 
 def pinned_segments(clip: Clip) -> tuple[PinnedSegment | None, ...]:
-    """Return the pins of each segment of the clip; None without pins."""
+    """Return the pins of each segment of the clip; None without pins and without limbs."""
     return _segments(clip.layer, clip.frames, clip.loop, clip.baseline)
 
 
@@ -80,7 +80,8 @@ def _segments(
 ) -> tuple[PinnedSegment | None, ...]:
     clip = Clip(layer=layer, frames=frames, loop=loop, fps=1.0, baseline=baseline)
     pinned = pinned_handles(clip)
-    if not pinned.any():
+    has_limbs = bool(layer.bone_joints) and baseline is None
+    if not (pinned.any() or has_limbs):
         return (None,) * len(pinned)
     found: list[PinnedSegment | None] = []
     for number, (at_start, at_end) in enumerate(adjacent_segments(clip)):
@@ -88,7 +89,7 @@ def _segments(
         for side, other in enumerate((at_start.before, at_end.after)):
             if other is not None:
                 fading[side] = pinned[other] & ~pinned[number]
-        if not (pinned[number].any() or fading.any()):
+        if not (pinned[number].any() or fading.any() or has_limbs):
             found.append(None)
             continue
         before, after = (
@@ -103,6 +104,7 @@ def _segments(
             tuple(handle.position for handle in layer.handles),
             layer.has_parent,
             stiffness_source(layer),
+            tuple(bone.ends for bone in layer.bones if bone.is_limb),
             tuple(_velocity_sources(clip, each) for each in around) if len(around) > 1 else (),
             (layer.widest_bounds.k, layer.widest_bounds.sigma_a, layer.widest_bounds.sigma_b),
         )

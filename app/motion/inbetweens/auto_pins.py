@@ -10,11 +10,13 @@ from app.document import (
     PinnedSegment,
     Variant,
     clip_segments,
+    find_limbs,
     pinned_segments,
     pose_segments,
     with_stiffness,
 )
 from app.motion.inbetweens.content_cache import digest
+from app.motion.inbetweens.limb_motion import firmness_on_limbs, rigid_points, segment_bones
 from app.motion.inbetweens.outline_cache import SAMPLED, nbytes_or_0
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.segment_keys import segment_key
@@ -111,7 +113,9 @@ class AutoPins:
     def prepare(self) -> tuple[PointCorrector, PoseSampler]:
         """Return the corrector of the handles, and a sampler with the values that it needs."""
         if self._prepared is None:
-            self._prepared = prepare_corrector(self.clip.layer, self._known)
+            limbs = find_limbs(self.clip.layer)
+            more = None if limbs is None else np.concatenate(rigid_points(limbs))
+            self._prepared = prepare_corrector(self.clip.layer, self._known, more)
         return self._prepared
 
     def _pins(self, number: int, segment: PinnedSegment, sampler: PoseSampler) -> SegmentPins:
@@ -125,16 +129,21 @@ class AutoPins:
             pace = self._pace(number, side)
             if other is not None and SLOWEST < pace < np.inf:
                 # Pixels per frame, opposite to the velocity of the motion that is pinned.
-                away = self._velocity(other, 1 - side)
+                away = self._velocity(other, 1 - side)[: len(layer.handles)]
                 slopes[side] = -self._pace(other, 1 - side) * away / pace
-        anchor = layer.anchor if layer.has_parent else None
+        anchor, firmness = layer.anchor if layer.has_parent else None, self._firmness(segment)
+        limbs, bones, count = find_limbs(layer), None, len(layer.handles)
+        if limbs is not None:
+            bones = segment_bones(layer, limbs, np.array(ends)[:, count:])
+            firmness = firmness_on_limbs(layer, limbs, firmness, segment.is_pinned)
         return SegmentPins(
             is_pinned=segment.is_pinned,
-            ends=np.array(ends),
+            ends=np.array(ends)[:, :count],
             slopes=np.where(segment.fading, slopes, 0.0),
             weights=segment.fading.astype(np.float64),
-            firmness=self._firmness(segment, anchor),
+            firmness=firmness,
             is_anchored=anchor is not None,
+            bones=bones,
         )
 
     def _pace(self, number: int, side: int) -> float:
@@ -152,13 +161,14 @@ class AutoPins:
         velocity: Complexes = weights @ np.array(steps)
         return velocity
 
-    def _firmness(self, segment: PinnedSegment, anchor: complex | None) -> Floats:
+    def _firmness(self, segment: PinnedSegment) -> Floats:
         """Return the firmness of each handle: 0 on a point of higher rank, 1 far from it.
 
         The anchor ranks above pinned handles, these above fading ones, and these above all others.
         Two close points with different targets would tear the drawing.
         """
         layer = self.clip.layer
+        anchor = layer.anchor if layer.has_parent else None
         places = np.array([each.position for each in layer.handles], dtype=np.complex128)
         rank = 2 * segment.is_pinned + segment.fading.any(axis=0)
         apart = np.abs(places[:, None] - places)

@@ -104,12 +104,14 @@ class FrameCorrector:
         self._points = np.array([each.position for each in layer.handles], dtype=np.complex128)
         pins = AutoPins(clip, variant, sampler)
         gives = any(track.enabled and track.reach < 1.0 for track in layer.tracks)
-        if gives:
+        if not gives and not layer.bone_joints:
+            self._corrector, own = pins.prepare()
+        elif not gives:
+            self._corrector, own = prepare_corrector(layer, sampler)
+        else:
             outline = layer.domain.outline
             held = outline[np.linspace(0, len(outline), HELD, endpoint=False).astype(np.intp)]
             self._corrector, own = prepare_corrector(layer, sampler, held)
-        else:
-            self._corrector, own = pins.prepare()
         stiffness = self._corrector.boundary.stiffness
         self._of_what = (
             *(self._corrector.points.tobytes(), stiffness.tobytes(), layer.widest_bounds),

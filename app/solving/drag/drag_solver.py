@@ -4,10 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
-from app.document import (
-    Pose,
-    Target,
-)
+from app.document import Pose, Target, misses_target
 from app.solving.drag.rig import PosedRig, Rig, pins_of
 from engine.deform import BoundedPull, State
 
@@ -80,6 +77,12 @@ class DragSolver:
         }
         wanted = posed.build_targets({**followed, **places}, self.pins)
         return replace(self, state=posed.deformer.release(self.state, wanted)), places
+
+    def out_of_reach(self, targets: Mapping[int, Target]) -> Mapping[int, float]:
+        """Return how far ends of limbs stay off their targets, in pixels, by the bones alone."""
+        followed = self.posed.follow(targets)[1]
+        off = {i: abs(followed[i].position - targets[i].position) for i in self.posed.ends}
+        return {i: error for i, error in off.items() if misses_target(self.rig.layer, error)}
 
     def make_pose(self, targets: Mapping[int, Target]) -> Pose:
         """Return the current state as a pose with these targets."""

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Layer, Target
+from app.document import Layer, LimbChain, Limbs, Target
 from app.rigging import bend_side, solve_chain
-from app.solving.drag.limbs import LimbChain, Limbs
 from engine.arrays import Complexes
 from engine.geometry import diameter
 

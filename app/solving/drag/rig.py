@@ -9,14 +9,16 @@ import numpy as np
 from app.document import (
     Handle,
     Layer,
+    Limbs,
     Pose,
     Target,
+    find_limbs,
     limits_along,
     stiffness_source,
     with_stiffness,
 )
 from app.solving.drag.limb_targets import carry_body, solve_limbs
-from app.solving.drag.limbs import END_FORCE, Limbs, PosedLimbs, locate_joints
+from app.solving.drag.limbs import END_FORCE, PosedLimbs, locate_joints
 from engine.deform import Armature, BoundedPull, Deformer, Handles, HandleTargets, State
 from engine.errors import EngineError
 from engine.maps import Boundary, Certificate, HarmonicMap
@@ -61,7 +63,7 @@ class Rig:
             boundary, is_same = Boundary.sample(domain), False
         if not is_same:
             boundary, earlier = with_stiffness(layer, boundary), None
-        limbs = earlier.limbs if earlier is not None else Limbs.of(layer, boundary)
+        limbs = earlier.limbs if earlier is not None else find_limbs(layer)
         # A joint is a place of bones, which do not hold the drawing there.
         carried |= layer.bone_joints if limbs is not None else frozenset()
         held = tuple(handle for handle in layer.handles if handle.id not in carried)
@@ -146,7 +148,7 @@ class PosedRig:
         return posed, solve_limbs(layer, limbs, joints, self.start, body.targets)
 
     @property
-    def _ends(self) -> frozenset[int]:
+    def ends(self) -> frozenset[int]:
         """The ids of the ends of all limbs, which are dragged with a force of their own."""
         limbs = self.rig.limbs.limbs if self.rig.limbs is not None else ()
         return frozenset(limb.chain.end for limb in limbs)
@@ -166,7 +168,7 @@ class PosedRig:
         pulling = [
             BoundedPull(
                 [index[i] for i in sorted(hand.handles) if i in index],
-                END_FORCE if self._ends.issuperset(hand.handles) else hand.max_force,
+                END_FORCE if self.ends.issuperset(hand.handles) else hand.max_force,
             )
             for hand in hands
             if not index.keys().isdisjoint(hand.handles)

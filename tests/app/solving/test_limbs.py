@@ -1,5 +1,6 @@
 """Limbs: chains of bones that keep their lengths and follow their ends."""
 
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
@@ -8,9 +9,10 @@ import pytest
 from animations import still_document
 from messages import says
 
-from app.document import Bone, with_directed_bones
+from app.document import Bone, clip_of, find_limbs, with_directed_bones
 from app.document.rig.chains import CIRCLE_OF_BONES, TWO_BONES_END, find_chains, require_chains
 from app.errors import LissomError
+from app.motion import Animation
 from app.rigging import bend_side, solve_chain
 from app.solving import pose_document
 from app.solving.script.keys import NO_END, NO_JOINT
@@ -84,7 +86,10 @@ def test_a_foot_bends_its_leg_and_leaves_the_head_alone():
 
 
 def test_a_hand_beyond_reach_straightens_its_arm_and_stays_on_the_circle():
-    layer, _ = posed({"frame": 0}, {"frame": 9, "targets": {"hand": [390, 500]}})
+    layer, notices = posed({"frame": 0}, {"frame": 9, "targets": {"hand": [390, 500]}})
+    assert notices == (
+        "frame 9: 'hand' is 119.2 px from its target, beyond the reach of its bones",
+    )
     at, reach = (
         places(layer),
         sum(abs(a - b) for a, b in ((225 + 300j, 295 + 302j), (295 + 302j, 365 + 300j))),
@@ -218,3 +223,19 @@ def test_a_straight_chain_bends_to_its_side():
         found = solve_chain(0j, [1.0] * count, 0.7 * count, start, side)
         assert bend_side(0j, *found[:2]) == side
         assert abs(found[-1] - 0.7 * count) < 1e-6
+
+
+def test_limbs_keep_their_lengths_between_keys():
+    keys = [{"frame": 0}, {"frame": 24, "targets": {"hip": [215, 215]}}]
+    layer, _ = posed(*keys)
+    limbs = find_limbs(layer)
+    points = np.concatenate([shaft.points for shaft in limbs.bone_shafts])
+    clip = clip_of(figure().with_layer(layer), layer.id)
+    free = replace(clip, layer=replace(layer, bones=()))
+    worst = []
+    for each in (clip, free):
+        places = Animation(each, points=points).base.frame(12.0).positions
+        spans = abs(places[2::3] - places[::3]) / abs(points[2::3] - points[::3])
+        worst.append(np.abs(spans - 1).max())
+    assert worst[0] < 0.02
+    assert worst[0] < 0.5 * worst[1]

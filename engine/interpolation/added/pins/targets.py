@@ -1,4 +1,4 @@
-"""Targets of handles during a segment, as functions of segment time from 0 to 1."""
+"""Targets of handles and bones during a segment, as functions of segment time from 0 to 1."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,11 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats
 from engine.deform.correction.point_targets import PointTargets
-from engine.geometry import fit_rigid
+from engine.geometry import RigidMotion, fit_rigid
+from engine.interpolation.added.pins.bones import SegmentBones
+
+# Weight of the points of bones: almost held, they make room for pinned handles.
+BONE_FIRMNESS = 0.998
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -31,6 +35,8 @@ class SegmentPins:
         Stiffness of each target: 1, less close to a fixed anchor.
     is_anchored : bool
         Whether the anchor stays at its position in the base.
+    bones : SegmentBones or None
+        Of the points after the handles.
     """
 
     is_pinned: Booleans
@@ -39,9 +45,28 @@ class SegmentPins:
     weights: Floats
     firmness: Floats
     is_anchored: bool
+    bones: SegmentBones | None = None
 
     def targets(self, time: float, places: Complexes, anchor: complex) -> PointTargets:
-        """Return the targets of the handles, given places (m,) and anchor of the base."""
+        """Return the targets of the points, given their places and the anchor of the base."""
+        if self.bones is None:
+            return self._handle_targets(time, places, anchor)[0]
+        count = len(self.is_pinned)
+        known, motion = self._handle_targets(time, places[:count], anchor)
+        held = places[:count] + known.offsets
+        pinned = {int(i): complex(held[i]) for i in np.flatnonzero(self.is_pinned)}
+        points = places[count:]
+        offsets = self.bones.wanted(time, motion.apply(points), pinned) - points
+        weights = np.full(len(points), BONE_FIRMNESS)
+        weights[: len(self.bones.rest[0])] = 0.0
+        return known._replace(
+            offsets=np.append(known.offsets, offsets), weights=np.append(known.weights, weights)
+        )
+
+    def _handle_targets(
+        self, time: float, places: Complexes, anchor: complex
+    ) -> tuple[PointTargets, RigidMotion]:
+        """Return the targets of the handles, and the rigid motion of all others."""
         rest = 1.0 - time
         wanted = self.ends[0] + time * time * (3.0 - 2.0 * time) * (self.ends[1] - self.ends[0])
         moving = time * rest * (rest * self.slopes[0] - time * self.slopes[1])
@@ -50,4 +75,5 @@ class SegmentPins:
         weights = np.where(self.is_pinned, 1.0, fading)
         motion = fit_rigid(places, offsets, weights, anchor if self.is_anchored else None)
         rigid = motion.apply(places) - places
-        return PointTargets(rigid + weights * (offsets - rigid), self.firmness, self.is_anchored)
+        offsets = rigid + weights * (offsets - rigid)
+        return PointTargets(offsets, self.firmness, self.is_anchored), motion

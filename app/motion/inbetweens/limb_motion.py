@@ -1,0 +1,44 @@
+"""Bones of a layer during a segment."""
+
+import numpy as np
+
+from app.document import Layer, Limbs
+from engine.arrays import Booleans, Complexes, Floats
+from engine.interpolation import ChainOfBones, SegmentBones
+
+BODY_POINTS = 8  # of those that tell how the body moves
+# Firmness of a pinned joint, whose target is a point of the drawing. Bones are as firm.
+JOINT_FIRMNESS = 0.5
+
+
+def rigid_points(limbs: Limbs) -> list[Complexes]:
+    """Return the points of the body and of each bone; without a body, those of the first bone."""
+    bones = [shaft.points for shaft in limbs.bone_shafts]
+    body = limbs.body[:BODY_POINTS]
+    return [body if len(body) > 1 else bones[0], *bones]
+
+
+def segment_bones(layer: Layer, limbs: Limbs, ends: Complexes) -> SegmentBones:
+    """Return the bones of a segment; `ends`, (2, p), are places of the rigid points at its keys."""
+    numbers = {handle.id: number for number, handle in enumerate(layer.handles)}
+    chains = [
+        ChainOfBones(
+            parent=0 if limb.parent is None else limb.parent + 1,
+            parts=tuple(limb.first_shaft + 1 + i for i in range(len(limb.lengths))),
+            joints=limb.places,
+            end=numbers[limb.chain.end],
+        )
+        for limb in limbs.limbs
+    ]
+    return SegmentBones(rest=rigid_points(limbs), ends=ends, chains=chains)
+
+
+def firmness_on_limbs(layer: Layer, limbs: Limbs, firmness: Floats, is_pinned: Booleans) -> Floats:
+    """Return the firmness of handles: those of limbs follow their bones unless they are pinned."""
+    on_limbs = {identity for limb in limbs.limbs for identity in limb.chain.handles}
+    changed = firmness.copy()
+    for number, handle in enumerate(layer.handles):
+        if handle.id in on_limbs:
+            held = JOINT_FIRMNESS if handle.id in layer.bone_joints else 1.0
+            changed[number] *= held if is_pinned[number] else 0.0
+    return np.asarray(changed, np.float64)

@@ -1,0 +1,65 @@
+"""Bones between two keyframes."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from engine.interpolation import ChainOfBones, SegmentBones
+
+BODY = np.array([-1, -1 + 1j, -2 + 0.5j, -1 - 1j])
+UPPER = np.array([0.2, 0.5, 0.8], complex)
+LOWER = np.array([1.2, 1.6, 2.0], complex)
+REST = [BODY, UPPER, LOWER]
+CHAIN = ChainOfBones(parent=0, parts=(1, 2), joints=(0j, 1 + 0j, 2 + 0j), end=7)
+
+
+def posed(upper, lower, body=0.0, lack=0.0):
+    """Return the points with angles of both bones, and the body turned and moved."""
+    turn = np.exp(1j * body)
+    knee = np.exp(1j * upper)
+    bent = knee + np.exp(1j * (upper + lower)) * (LOWER - 1)
+    limbs = np.concatenate([np.exp(1j * upper) * UPPER, bent])
+    limbs = limbs + lack * np.array([0.1, -0.2, 0.1, -0.05, 0.1, -0.05])
+    return turn * np.concatenate([BODY, limbs]) + 0.3 * body
+
+
+def bones(*ends):
+    return SegmentBones(rest=REST, ends=np.array(ends), chains=[CHAIN])
+
+
+def lengths(wanted):
+    """Return the spans of both shafts, and the gap of the knee."""
+    upper, lower = wanted[4:7], wanted[7:]
+    ways = (upper[2] - upper[0]) / 0.6, (lower[2] - lower[0]) / 0.8
+    knees = upper[0] + 0.8 * ways[0], lower[0] - 0.2 * ways[1]
+    return abs(ways[0]), abs(ways[1]), abs(knees[0] - knees[1])
+
+
+def test_bones_change_nothing_at_keys():
+    ends = posed(0.2, 0.4, lack=1.0), posed(1.2, -0.9, 0.5, lack=-1.0)
+    known = bones(*ends)
+    for time, places in zip((0.0, 1.0), ends, strict=True):
+        assert_allclose(known.wanted(time, places, {}), places, atol=1e-12)
+
+
+@pytest.mark.parametrize("time", [0.1, 0.5, 0.8])
+def test_bones_turn_by_blended_angles_on_their_moving_body(time):
+    known = bones(posed(0.2, 0.4), posed(1.2, -0.9, 0.5))
+    base = posed(0.0, 0.0, 0.35)  # where the base has the limb does not matter
+    wanted = known.wanted(time, base, {})
+    assert_allclose(wanted[:4], base[:4])
+    assert_allclose(lengths(wanted), [1, 1, 0], atol=1e-12)
+    blended = posed(0.2 + time * 1.0, 0.4 - time * 1.3, 0.35)
+    assert_allclose(wanted, blended, atol=1e-12)
+
+
+@pytest.mark.parametrize("time", [0.2, 0.6])
+def test_two_bones_reach_a_pinned_end(time):
+    known = bones(posed(0.9, -1.5), posed(0.5, -1.2))
+    goal = posed(0.9, -1.5)[-1] + 0.1j * time
+    wanted = known.wanted(time, posed(0.7, -1.3), {7: goal})
+    assert_allclose(lengths(wanted), [1, 1, 0], atol=1e-12)
+    assert abs(wanted[-1] - goal) < 1e-12
+    # Beyond reach the angles stay.
+    free = known.wanted(time, posed(0.7, -1.3), {})
+    assert_allclose(known.wanted(time, posed(0.7, -1.3), {7: 5 + 0j}), free)
