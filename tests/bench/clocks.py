@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import Clip, FrameRange, Spring, Track, TrackKey, clip_of, pinned_segments
 from app.motion import Animation
-from app.motion.inbetweens.auto_pins import AutoPins
+from app.motion.inbetweens.pins.auto_pins import AutoPins
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.storage import load_project, sample_images

@@ -4,8 +4,8 @@ from collections.abc import Generator, Mapping, Sequence
 from typing import NamedTuple
 
 from app.document import Clip, Pose, pose_segments, segment_time_at
-from app.motion.inbetweens.auto_pins import AutoPins
 from app.motion.inbetweens.frame_corrector import needs_correction
+from app.motion.inbetweens.pins.auto_pins import AutoPins
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.segment_keys import SegmentKey, segment_key, segment_poses
 from app.motion.meshes.deform_mesh import DeformMesh

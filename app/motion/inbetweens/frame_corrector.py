@@ -18,8 +18,8 @@ from app.document import (
     slider_poses,
     stiffness_source,
 )
-from app.motion.inbetweens.auto_pins import AutoPins, firmness_at, prepare_corrector
 from app.motion.inbetweens.keyframe_motion import KeyframeMotion
+from app.motion.inbetweens.pins.auto_pins import AutoPins, firmness_at, prepare_corrector
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection, SolvedSliders
 from app.motion.inbetweens.secondary_motion import SecondaryMotion, SecondaryTargets

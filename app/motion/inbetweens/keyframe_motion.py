@@ -4,7 +4,7 @@ from collections.abc import Callable
 from copy import copy
 
 from app.document import Clip, Pose, Variant, keyed_pose_at, segment_time_at
-from app.motion.inbetweens.auto_pins import AutoPins
+from app.motion.inbetweens.pins.auto_pins import AutoPins
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.slider_stage import BaseAt, SliderStage
 from engine.interpolation import Frame, Inbetweens

@@ -6,7 +6,7 @@ from copy import copy
 import numpy as np
 
 from app.document import Clip, Layer, Pose, Variant, slider_poses, slider_weights_at
-from app.motion.inbetweens.auto_pins import BESIDE
+from app.motion.inbetweens.pins.auto_pins import BESIDE
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection, SolvedSliders
 from app.motion.inbetweens.segment_keys import frame_content

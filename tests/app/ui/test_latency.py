@@ -20,7 +20,7 @@ from app.editor.actions import editing, playback
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag
 from app.editor.actions.posing.pose_solver import POSING, STEPS
 from app.motion import PoseSampler
-from app.motion.inbetweens.auto_pins import AutoPins
+from app.motion.inbetweens.pins.auto_pins import AutoPins
 from app.motion.inbetweens.segment_keys import segment_key
 
 HAND = object()

@@ -16,8 +16,8 @@ from app.document import (
     with_stiffness,
 )
 from app.motion.inbetweens.content_cache import digest
-from app.motion.inbetweens.limb_motion import firmness_on_limbs, rigid_points, segment_bones
 from app.motion.inbetweens.outline_cache import SAMPLED, nbytes_or_0
+from app.motion.inbetweens.pins.limb_motion import firmness_on_limbs, rigid_points, segment_bones
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.segment_keys import segment_key
 from engine.arrays import Complexes, Floats
