@@ -37,6 +37,7 @@ from engine.deform import BoundedPull
 STEPS, HASTE = 2, 0.004
 # After the release: the seconds of one job, as many as fit between two pictures.
 REST = 0.012
+AWAITED = 0.1  # the same while a command waits for the pose, so that the worker loses less time
 
 
 def update_drag(session: Session, project: Project) -> None:
@@ -164,7 +165,9 @@ def _pace(drag: DragSession) -> _Pace:
     """Return the pace: each step is shown during a drag; after the release the solver hurries."""
     if drag.is_rigid:
         return _Pace(0, 0.0)
-    return _Pace(STEPS, HASTE) if drag.steps == 0 else _Pace(MOST_STEPS, REST)
+    if drag.steps == 0:
+        return _Pace(STEPS, HASTE)
+    return _Pace(MOST_STEPS, AWAITED if drag.is_awaited else REST)
 
 
 class _Steps(NamedTuple):
