@@ -58,9 +58,13 @@ class SoundMix:
     def is_silent(self) -> bool:
         return not self._sounds
 
+    def place_of(self, frame: float) -> float:
+        """Return the place of a frame's beginning, between two samples or on one."""
+        return frame / self._document.fps * self.rate
+
     def sample_at(self, frame: float) -> int:
         """Return the sample at the beginning of a frame."""
-        return round(frame / self._document.fps * self.rate)
+        return round(self.place_of(frame))
 
     def read(self, first: int, count: int) -> Samples:
         """Return samples (count, 2); beyond −1 to 1 where loud sounds meet."""
