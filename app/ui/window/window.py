@@ -26,7 +26,8 @@ from app.render.gpu.context import describe_graphics, is_software
 from app.storage import sample_images
 from app.texts import N_, _, message_of
 from app.ui.panel import Panel
-from app.ui.panels import deform, distortion, export, handle
+from app.ui.panels import deform, export, handle
+from app.ui.panels.distortion.tab import draw_distortion_panel
 from app.ui.panels.layer_setup import cut_out, domain, material
 from app.ui.style.theme import Look
 from app.ui.timeline import timeline
@@ -218,7 +219,7 @@ class Window:
             Panel(N_("Motion"), icons.ICON_FA_PERSON_WALKING, draw_motion_panel),
             Panel(N_("Deform"), icons.ICON_FA_SLIDERS, deform.draw_deform_panel),
             Panel(N_("Material"), icons.ICON_FA_CUBE, material.draw_material_panel),
-            Panel(N_("Distortion"), icons.ICON_FA_CHART_LINE, distortion.draw_distortion_panel),
+            Panel(N_("Distortion"), icons.ICON_FA_CHART_LINE, draw_distortion_panel),
             Panel(N_("Mesh"), icons.ICON_FA_SHAPES, domain.draw_domain_panel),
             Panel(N_("Cut-out"), icons.ICON_FA_SCISSORS, cut_out.draw_cut_out_panel),
             Panel(N_("Export"), icons.ICON_FA_FILE_EXPORT, export.draw_export_panel),

@@ -12,7 +12,7 @@ from app.motion import LayerFrame
 from app.render import heat_colormap
 from app.texts import _
 from app.ui.methods import METHODS
-from app.ui.panels.distortion_curves import (
+from app.ui.panels.distortion.curves import (
     LIMIT_WIDTH,
     PLOT_FLAGS,
     draw_distortion_curves,
