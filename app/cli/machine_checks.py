@@ -14,6 +14,7 @@ from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, to_float32_p
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.target import RenderTarget
 from app.reports import library_version
+from app.sound import open_device
 from app.texts import _, message_of
 from app.ui.dialogs.native_dialog import find_system_dialogs
 
@@ -38,7 +39,7 @@ def check_rendering() -> list[CheckResult]:
 
 def check_surroundings() -> list[CheckResult]:
     """Check what only the window or some commands need."""
-    return [_display(), _dialogs(), *map(_extra, LIBRARIES)]
+    return [_display(), _dialogs(), _sound(), *map(_extra, LIBRARIES)]
 
 
 def _rendering(backend: Backend) -> CheckResult:
@@ -98,6 +99,16 @@ def _dialogs() -> CheckResult:
         "none; Lissom uses its own dialogs. For the system's dialogs: sudo apt install zenity"
     )
     return CheckResult(name, remedy, works=False)
+
+
+def _sound() -> CheckResult:
+    name = _("sound device")
+    try:
+        device = open_device()
+    except LissomError as error:
+        text = _("{problem}; exports carry sounds all the same").format(problem=message_of(error))
+        return CheckResult(name, text, works=False)
+    return CheckResult(name, _("{rate:,} samples a second").format(rate=device.rate))
 
 
 def _extra(extra: Extra) -> CheckResult:

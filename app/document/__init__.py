@@ -55,6 +55,7 @@ from app.document.channels.sounds import (
     Mouths as Mouths,
     Sound as Sound,
     SoundFile as SoundFile,
+    VolumeKeys as VolumeKeys,
 )
 from app.document.channels.springs import SPRING_PRESETS as SPRING_PRESETS, Spring as Spring
 from app.document.channels.tangent_mode import TangentMode as TangentMode
@@ -129,7 +130,7 @@ from app.document.layers.groups import (
 )
 from app.document.layers.switch_group import SwitchGroup as SwitchGroup
 from app.document.model import Document as Document
-from app.document.playhead import Playhead as Playhead
+from app.document.playhead import Playhead as Playhead, loop_length as loop_length
 from app.document.queries.applied_motion import (
     digest_motion as digest_motion,
     is_motion_unedited as is_motion_unedited,

@@ -12,6 +12,16 @@ from app.texts import _
 SLACK = 1e-6
 
 
+def loop_length(document: Document) -> int:
+    """Return the number of frames after which playback begins anew in a loop.
+
+    A loop of the whole animation skips the last frame, which equals the first. A loop of the
+    preview range shows all its frames.
+    """
+    played = document.played_frames
+    return max(1, played.last - played.first + (0 if played == document.frames else 1))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Playhead:
     """A playhead that is stopped at a frame, or playing since a clock reading."""
@@ -32,8 +42,7 @@ class Playhead:
     def frame_at(self, document: Document, now: float) -> int:
         """Return the frame that is shown at clock reading `now`.
 
-        A loop of the whole animation skips the last frame, which equals the first. A loop of the
-        preview range shows all its frames. Without a loop, playback stops at the end.
+        Without a loop, playback stops at the end.
         """
         if self.since is None:
             return self.frame
@@ -41,8 +50,7 @@ class Playhead:
         run = self.frame + self._gone(document, now)
         if not document.loop:
             return played.clamp(run)
-        length = played.last - played.first + (0 if played == document.frames else 1)
-        return played.first + (run - played.first) % max(1, length)
+        return played.first + (run - played.first) % loop_length(document)
 
     def is_over(self, document: Document, now: float) -> bool:
         """Return whether playback without a loop has reached the end."""

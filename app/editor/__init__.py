@@ -30,6 +30,7 @@ from app.editor.parts.timeline import (
     KeyBox as KeyBox,
     KeyDrag as KeyDrag,
     ScrubDrag as ScrubDrag,
+    SoundDrag as SoundDrag,
     TimeDrag as TimeDrag,
     TimeGesture as TimeGesture,
     TimeRangeView as TimeRangeView,

@@ -10,6 +10,7 @@ from app.document import (
     CAMERA,
     MARKER,
     SWITCH,
+    VOLUME,
     Baseline,
     Channel,
     Clip,
@@ -97,6 +98,7 @@ class Project(Revised):
         document = self.document
         lanes = [Channel(MARKER)] if document.markers else []
         lanes += [Channel(CAMERA)] if document.camera else []
+        lanes += [Channel(VOLUME, part=sound.name) for sound in document.sounds]
         for row in self.tree:
             if row.switch_group is not None:
                 lanes.append(Channel(SWITCH, part=row.switch_group.name))
@@ -120,10 +122,7 @@ class Project(Revised):
 
     @property
     def selected_track(self) -> int | None:
-        """The handle id of the selected track of the active layer.
-
-        None if another channel is selected.
-        """
+        """The handle id of the selected track of the active layer, if a track is selected."""
         track = track_in(self.document, self.channel)
         return None if track is None else track.handles[0]
 

@@ -19,6 +19,7 @@ from app.editor.project import Project
 from app.editor.work.jobs import Jobs
 from app.editor.work.revised import Revised
 from app.export import ExportPlan
+from app.sound import SoundPlayer
 
 TutorialStage = Literal["handle", "time", "pose", "play", "export", "done"]
 P = ParamSpec("P")
@@ -63,6 +64,7 @@ class Session(Revised):
     settings: SessionSettings
     project: Project | None = None
     notices: Notices = field(init=False)
+    player: SoundPlayer = field(init=False)
     dialogs: DialogState = field(default_factory=DialogState)
     clipboard: Clipboard = field(default_factory=Clipboard)
     diagnostics: Diagnostics = field(default_factory=Diagnostics)
@@ -74,6 +76,7 @@ class Session(Revised):
 
     def __post_init__(self) -> None:
         self.notices = Notices(now=self.clock)
+        self.player = SoundPlayer(self.clock)
 
     def put_project(self, project: Project | None) -> None:
         """Show a project, with the tool that poses; None shows the welcome view."""

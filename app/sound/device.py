@@ -1,6 +1,13 @@
-"""The machine's sound device."""
+"""The machine's sound device.
 
-from collections.abc import Callable, Generator
+The library miniaudio decodes and plays, and brings all that it needs: PortAudio, the usual other
+choice, is no part of its Python package on Linux.
+"""
+
+import os
+import sys
+from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
 from typing import Any, Final, Protocol
 
 from app.errors import LissomError
@@ -31,20 +38,38 @@ def open_device() -> SoundDevice:
     import miniaudio  # noqa: PLC0415 - only sounds need it
 
     try:
-        device = miniaudio.PlaybackDevice(
-            output_format=miniaudio.SampleFormat.FLOAT32,
-            nchannels=2,
-            sample_rate=RATE,
-            buffersize_msec=PERIOD,
-            callback_periods=PERIODS,
-            app_name="Lissom",
-        )
+        with _without_library_messages():
+            device = miniaudio.PlaybackDevice(
+                output_format=miniaudio.SampleFormat.FLOAT32,
+                nchannels=2,
+                sample_rate=RATE,
+                buffersize_msec=PERIOD,
+                callback_periods=PERIODS,
+                app_name="Lissom",
+            )
     except miniaudio.MiniaudioError as error:
-        raise LissomError(_(NO_DEVICE).format(reason=error)) from error
+        reason = " ".join(map(str, error.args))
+        raise LissomError(_(NO_DEVICE).format(reason=reason)) from error
     if device.backend == "Null":
         device.close()
         raise LissomError(_(NO_DEVICE).format(reason=device.backend))
     return _MiniaudioDevice(device)
+
+
+@contextmanager
+def _without_library_messages() -> Iterator[None]:
+    """Keep quiet what the system's libraries write to the terminal about missing devices."""
+    if not sys.platform.startswith("linux"):
+        yield
+        return
+    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
 
 
 class _MiniaudioDevice:

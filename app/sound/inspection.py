@@ -15,6 +15,7 @@ from app.texts import _
 PEAKS_PER_SECOND: Final = 200
 SUFFIXES: Final = (".wav", ".flac", ".mp3", ".ogg")
 Peaks = npt.NDArray[np.uint8]
+Levels = npt.NDArray[np.float64]
 
 
 class InspectedSound(NamedTuple):

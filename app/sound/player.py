@@ -103,10 +103,11 @@ class SoundPlayer:
 
     def lose_device(self, reason: str) -> None:
         """Do without a device from now on."""
+        self.stop()
         device, self._device, self.failure = self._device, None, reason
         self._is_running = False
         if device is not None:
-            # A device that hangs must not hold the window.
+            # A device that does not answer must not stop the window.
             threading.Thread(target=device.stop, daemon=True).start()
 
     def pull(self, wanted: int) -> Samples:

@@ -14,7 +14,7 @@ from app.sound.samples import Samples
 
 BLOCK: Final = 1_024  # samples
 FADE: Final = 0.004  # seconds over which sounds begin, end and meet
-Places = npt.NDArray[Any]  # samples of a mix, whole or between two
+SamplePlaces = npt.NDArray[Any]  # samples of a mix, whole or between two
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,7 +55,7 @@ def stream_part(mix: SoundMix, frame: float, seconds: float) -> Iterator[Samples
 
 
 def _turn(
-    mix: SoundMix, at: Places, speed: float, first: float, period: float, *, is_first: bool
+    mix: SoundMix, at: SamplePlaces, speed: float, first: float, period: float, *, is_first: bool
 ) -> Samples:
     """Return samples within a turn of a loop."""
     found = _read(mix, at, speed)
@@ -68,7 +68,7 @@ def _turn(
     return found
 
 
-def _read(mix: SoundMix, places: Places, speed: float) -> Samples:
+def _read(mix: SoundMix, places: SamplePlaces, speed: float) -> Samples:
     """Return the samples at evenly spaced places, exact at the speed 1."""
     if speed == 1:
         return mix.read(round(places[0]), len(places))

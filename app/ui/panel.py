@@ -25,6 +25,11 @@ class Panel:
     place: Literal["MainDockSpace", "side", "bottom"] = "side"
     # Drawn before the panel. It stays visible if `draw` fails.
     draw_background: Callable[[Session, Look, Project], list[Action]] | None = None
+    # Whether a project has something for it; None for all projects. Otherwise it has no tab.
+    is_needed: Callable[[Project], object] | None = None
+
+    def has_tab(self, project: Project | None) -> bool:
+        return self.is_needed is None or bool(project and self.is_needed(project))
 
     @property
     def labels(self) -> tuple[str, str, str]:

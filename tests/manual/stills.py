@@ -4,15 +4,17 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 from harness import Robot
+from sound_files import sound, wav
 
-from app.document import Target
+from app.document import VOLUME, Channel, Target, channel_commands, sound_commands
 from app.document.commands import handle_commands
 from app.editor.actions import dialog_actions, editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import set_targets
-from app.editor.actions.timing import cycles, keys
+from app.editor.actions.timing import cycles, keys, sounds
 from app.editor.actions.timing.channel_keys import key_camera
 from app.editor.layering.layer_selection import set_active_layer, toggle_tree_row
 from app.editor.poses import copying, library, pasting
@@ -233,6 +235,23 @@ def _camera(window: Film, path: Path) -> None:
     _still(window, path)
 
 
+def _sound(window: Film, path: Path) -> None:
+    """A sound with its waveform below the ruler, and its settings."""
+    open_sample(window, "friend", frame=36)
+    times = np.arange(3 * 44_100) / 44_100
+    words = np.clip(np.sin(14.5 * times) * np.sin(2.3 * times + 1), 0, 1)
+    talk = sound(wav((words * np.sin(1_100 * times))[:, None], 44_100), "hello.wav", start=10)
+    window.act(editing.edit_document, sound_commands.add_sound(talk))
+    channel = Channel(VOLUME, part=talk.name)
+    for frame, volume in ((14, 0.2), (30, 1.0)):
+        window.act(editing.edit_document, channel_commands.set_key(channel, frame, volume))
+    window.act(sounds.select_sound, talk.name)
+    window.show_tab("Sound")
+    heighten_timeline(window, CHOICE)
+    _still(window, path)
+    heighten_timeline(window, -CHOICE)
+
+
 def _export(window: Film, path: Path) -> None:
     """What will be exported of an octopus."""
     open_sample(window, "octopus", frame=28)
@@ -303,6 +322,7 @@ STILLS: dict[str, Callable[[Film, Path], None]] = {
     "layers": _layers,
     "mouths": _mouths,
     "camera": _camera,
+    "sound": _sound,
     "export": _export,
     "formats": _formats,
     "limit": _limit,

@@ -31,7 +31,7 @@ def shown_now() -> Shown:
         "tabs": [
             panel.label.rpartition("###")[2]
             for panel in params.docking_params.dockable_windows
-            if panel.dock_space_name == "side"
+            if panel.dock_space_name == "side" and panel.is_visible
         ],
         "tools": [spec.label for group in GROUPS for spec in group],
     }

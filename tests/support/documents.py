@@ -31,6 +31,7 @@ from app.document import (
     Sound,
     SoundFile,
     Transform,
+    VolumeKeys,
     channel_commands,
     pose_channel,
 )
@@ -496,6 +497,10 @@ def full_sound(unknown: Unknown) -> Sound:
             drawings=(("X", 0), ("A", 5)),
             keys=(SWITCH.key(2, 5),),
             unknown=unknown,
+        ),
+        volume_keys=(
+            VolumeKeys(kind="track", layer=0, part=4, keys=((1, 2 + 3j), (4, 0j))),
+            VolumeKeys(kind="slider", layer=0, part="jaw", keys=()),
         ),
         unknown=unknown,
     )

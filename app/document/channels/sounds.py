@@ -58,6 +58,16 @@ class Mouths:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class VolumeKeys:
+    """The keys of a channel that were made of the volume of a sound."""
+
+    kind: str  # of the channel: a slider's, or a handle's track
+    layer: int
+    part: int | str
+    keys: tuple[tuple[int, complex], ...]  # frames and values, as they were made
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Sound:
     """A part of a sound file, heard from a frame on at its own speed.
 
@@ -73,6 +83,7 @@ class Sound:
     keys: tuple[Key[float], ...] = ()  # of the volume
     muted: bool = False
     mouths: Mouths | None = None
+    volume_keys: tuple[VolumeKeys, ...] = ()  # at most one for each channel
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:

@@ -12,6 +12,7 @@ from app.editor.actions import dialog_actions, editing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.layer_setup.layer_runtimes import update_layer_runtimes
 from app.editor.actions.project_files import files
+from app.editor.actions.timing import sounds
 from app.editor.error_reports import as_sentence
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
@@ -20,6 +21,7 @@ from app.editor.work.jobs import JobKind
 from app.editor.work.layer_runtime import LayerRuntime
 from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError, NoticeCollector, display_name
 from app.solving import KeyResolver, start_picture_replacement
+from app.sound import SUFFIXES
 from app.storage import (
     LAYERED,
     ImportedLayer,
@@ -232,7 +234,13 @@ def set_drop_target(_: Session, project: Project, identity: int) -> None:
 
 
 def drop_files(session: Session, paths: Sequence[Path]) -> None:
-    """Open dropped files; ask whether pictures join the open scene."""
+    """Open dropped files, and add sounds; ask whether pictures join the open scene."""
+    sound_files = [path for path in paths if path.suffix.lower() in SUFFIXES]
+    if session.project is not None and sound_files:
+        sounds.add_sounds(session, sound_files)
+        paths = [path for path in paths if path not in sound_files]
+        if not paths:
+            return
     kinds = (*files.PICTURES, *LAYERED)
     pictures = [path for path in paths if path.suffix.lower() in kinds and not path.is_dir()]
     project = session.project

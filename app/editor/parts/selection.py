@@ -3,7 +3,16 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.document import TRACK, Channel, Document, KeysByChannel, Layer, frames_in, pose_channel
+from app.document import (
+    TRACK,
+    VOLUME,
+    Channel,
+    Document,
+    KeysByChannel,
+    Layer,
+    frames_in,
+    pose_channel,
+)
 from app.editor.work.revised import Revised
 
 
@@ -77,6 +86,9 @@ class Selection(Revised):
 
     def select_channel(self, channel: Channel[Any] | None) -> None:
         self.channel = channel
+
+    def select_sound(self, name: str) -> None:
+        self.channel = Channel(VOLUME, part=name)
 
     def select_track(self, layer: Layer, handle: int) -> None:
         """Select the track of a handle; a track without keys is selected once it has keys."""

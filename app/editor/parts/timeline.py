@@ -19,6 +19,7 @@ from app.document import (
 from app.editor.work.derived import Derived
 from app.editor.work.revised import Revised
 from app.editor.work.track_keys import Recording
+from app.sound import SoundMix
 
 SMALLEST, LARGEST = 0.002, 4.0  # em per frame
 MARGIN = 1.4  # em left and right of fitted frames
@@ -117,6 +118,23 @@ class CycleDrag(TimeDrag):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SoundDrag(TimeDrag):
+    """Drag of a sound in time, or of one of its ends."""
+
+    sound: str  # name
+    part: Literal["whole", "begin", "end"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class HeardSound:
+    """What is heard, or was heard last."""
+
+    playhead: Playhead  # as it followed the sound
+    source: tuple[object, ...] | None = None  # values that the mix depends on
+    mix: SoundMix | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyBox:
     """A box of time and lanes that selects keys."""
 
@@ -163,6 +181,7 @@ class TimelineState(Revised):
     """The playhead, and the view of a project's timeline."""
 
     playhead: Playhead = field(default_factory=Playhead)
+    heard: HeardSound | None = None
     moved_at: float = -inf  # the clock's seconds when the playhead last moved
     recording: Recording | None = None  # until accepted or discarded
     time_range: TimeRangeView | None = None  # visible range; None fits all frames
@@ -195,6 +214,15 @@ class TimelineState(Revised):
     def toggle_play(self, document: Document, now: float) -> None:
         turn = self.playhead.play if self.playhead.since is None else self.playhead.pause
         self.playhead = turn(document, now)
+
+    def note_heard(self, heard: HeardSound | None) -> None:
+        self.heard = heard
+
+    def lead(self, since: float) -> None:
+        """Let the playhead play as if it had begun at a reading of the clock, as its sound did."""
+        self.playhead = replace(self.playhead, since=since)
+        if self.heard is not None:
+            self.heard = replace(self.heard, playhead=self.playhead)
 
     def pause(self, document: Document, now: float) -> None:
         self.playhead = self.playhead.pause(document, now)

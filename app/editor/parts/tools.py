@@ -1,12 +1,13 @@
 """The tools of the viewport: the selected one, and the one that has the pointer."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol, get_args
 
 from app.editor.overlay_shapes import Cursor, OverlayShape
 from app.editor.work.motion_setup import MotionSetup
 from app.editor.work.revised import Revised
+from app.sound import Response
 
 CutTool = Literal["keep", "remove", "knife", "pick", "holes"]
 StiffnessTool = Literal["stiff", "soft", "normal", "bone"]
@@ -67,6 +68,9 @@ class ToolState(Revised):
     strength: float = 10.0  # factor of the stiffness brush
     softness: float = 0.5  # part of the stiffness brush's radius over which it fades
     recording_speed: float = 1.0  # of the animation's speed
+    response: Response = field(default_factory=Response)  # of mouths to the volume of a sound
+    opening: complex = complex(0, -20)  # pixels by which a handle moves where a sound is loudest
+    volume_target: str = ""  # what opens with the volume, by its name in the list
     is_snapping: bool = False  # whether pointer moves snap to steps
     is_forcing_targets: bool = False  # whether released targets beyond reach stay
     is_space_used: bool = False  # whether Space was held to pan the view
@@ -128,6 +132,15 @@ class ToolState(Revised):
 
     def set_recording_speed(self, speed: float) -> None:
         self.recording_speed = speed
+
+    def set_response(self, response: Response) -> None:
+        self.response = response
+
+    def set_opening(self, opening: complex) -> None:
+        self.opening = opening
+
+    def set_volume_target(self, target: str) -> None:
+        self.volume_target = target
 
     def snap(self, *, snaps: bool) -> None:
         """Note whether this move of the pointer snaps to steps."""

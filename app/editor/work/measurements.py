@@ -1,5 +1,6 @@
 """What is measured of the present document, on the worker."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from app.document import Clip
@@ -7,6 +8,7 @@ from app.editor.work.derived import Derived
 from app.editor.work.revised import Revised
 from app.motion import BoundingBox, MotionPaths, ParentTransforms
 from app.reports import Curves
+from app.sound import InspectedSound
 
 EXTENTS = 32  # extents of the motion that are remembered for undo and redo
 
@@ -28,3 +30,10 @@ class Measurements(Revised):
     extent: Derived[tuple[object, ...], BoundingBox | None] = field(
         default_factory=lambda: Derived(None, remembers=EXTENTS)
     )
+    # Peaks and loudness of sound files by checksum; None of those that cannot be read.
+    waveforms: Mapping[str, InspectedSound | None] = field(default_factory=dict)
+
+    def note_waveform(self, inspected: InspectedSound | None, sha256: str = "") -> None:
+        """Note what was measured of a sound file, or that it cannot be read."""
+        name = sha256 if inspected is None else inspected.file.sha256
+        self.waveforms = {**self.waveforms, name: inspected}

@@ -7,16 +7,19 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.document import SWITCH, VOLUME, Cue, Document, Mouths, Sound, SoundFile
+from app.document import SWITCH, VOLUME, Cue, Document, Mouths, Sound, SoundFile, VolumeKeys
 from app.errors import LissomError
 from app.storage.files.reading import DAMAGED_ZIP
+from app.storage.json_values import as_text, as_whole
 from app.storage.project.archive import Archive
 from app.storage.project.channel_codecs import key_codec
 from app.storage.project.codecs import (
     FLAG,
     NUMBER,
+    POINT,
     TEXT,
     WHOLE,
+    Codec,
     Field,
     list_of,
     nested_record,
@@ -29,6 +32,11 @@ from app.texts import N_
 
 def _cue(seconds: float, name: str) -> Cue:
     return Cue(seconds=seconds, name=name)
+
+
+def _read_part(content: object, where: str) -> int | str:
+    """Return the id of a handle, or the name of a slider."""
+    return as_text(content, where) if isinstance(content, str) else as_whole(content, where)
 
 
 MOUTHS = record(
@@ -49,6 +57,14 @@ MOUTHS = record(
     Field("drawings", list_of(pair(TEXT, WHOLE, N_("a name and a layer")))),
     Field("keys", list_of(key_codec(SWITCH))),
 )
+VOLUME_KEYS = record(
+    VolumeKeys,
+    Field("kind", TEXT),
+    Field("layer", WHOLE),
+    Field("part", Codec(lambda part: part, _read_part)),
+    Field("keys", list_of(pair(WHOLE, POINT, N_("a frame and a value")))),
+    unknown=None,
+)
 # The bytes of its file are a member, named by the checksum.
 SOUND = record(
     dict,
@@ -66,6 +82,7 @@ SOUND = record(
     Field("keys", list_of(key_codec(VOLUME))),
     Field("muted", FLAG),
     Field("mouths", optional(MOUTHS), default=None),
+    Field("volume_keys", list_of(VOLUME_KEYS), default=()),
 )
 
 

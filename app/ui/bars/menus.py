@@ -86,7 +86,9 @@ def _tabs(session: Session, panels: Sequence[Panel]) -> list[Action]:
     actions = [
         do(viewing.show_tab, panel.title)
         for panel in panels
-        if panel.place == "side" and imgui.menu_item(panel.label, "", is_in_front(panel.title))[0]
+        if panel.place == "side"
+        and panel.has_tab(session.project)
+        and imgui.menu_item(panel.label, "", is_in_front(panel.title))[0]
     ]
     imgui.end_menu()
     return actions

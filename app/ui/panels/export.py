@@ -17,6 +17,7 @@ from app.texts import _, message_of, ngettext
 from app.ui.panels.export_settings.format_options import draw_format_options
 from app.ui.panels.export_settings.preview import draw_export_preview
 from app.ui.panels.export_settings.sizes import LARGEST, draw_size_fields
+from app.ui.panels.export_settings.sound import draw_sound_option
 from app.ui.shortcuts.keys import shown_keys
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
@@ -59,7 +60,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
         actions += more
         if settings.framing == "canvas" or project.document.camera:
             actions += _canvas(look, project)
-    chosen = _details(look, chosen)
+    chosen = draw_sound_option(look, project.document, _details(look, chosen))
     if not project.document.camera:
         draw_export_preview(look, project, settings, box, motion)
     heading(look, _("Frames"))

@@ -6,7 +6,7 @@ from app.editor.actions.layer_setup import cut_out_editing, handle_editing, stif
 from app.editor.actions.posing import handles, pose_drag
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
 from app.editor.actions.project_files import export_settings, exporting, files, recovery, saving
-from app.editor.actions.timing import channel_keys, cycles, keys, timeline_drag, tracks
+from app.editor.actions.timing import channel_keys, cycles, keys, sounds, timeline_drag, tracks
 from app.editor.actions.tracking import recording
 from app.editor.layering import layer_list
 from app.editor.poses import copying, library, pasting, pasting_targets
@@ -93,6 +93,7 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
             *(playback.PREVIOUS_MARKER, playback.NEXT_MARKER, timeline_drag.fit_timeline),
         ),
     ),
+    N_("Sound"): ((sounds.ask_sound_to_add,),),
     N_("Keys"): (
         (keys.use_next_tangent_mode, *keys.EASE_KEYS),
         (cycles.create_cycle, cycles.bake_cycle, cycles.end_cycle),

@@ -21,6 +21,7 @@ PAGES = {
     "Distortion": "distortion",
     "Mesh": "mesh",
     "Cut-out": "cut-out",
+    "Sound": "sound",
     "Export": "export",
 }
 

@@ -10,6 +10,7 @@ from app.document import (
     CAMERA,
     MARKER,
     SWITCH,
+    VOLUME,
     Channel,
     Layer,
     TreeRow,
@@ -29,6 +30,7 @@ BAR, BAR_SHARE = 3.6, 0.62  # em: largest height of segment bars, and as a share
 CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height, bars are higher, without overview
 ROUNDING = 0.4  # em
 NAMES, NAMES_SHARE = 11.0, 0.25  # em: largest width of the names, and as a share of all
+SOUND, SOUNDS_SHARE = 1.9, 0.4  # em: height of a sound's lane; all of them, as a share of all
 THIN, TALL = 1.25, 2.8  # em: height of a track's row, and of the row of a single layer
 LEAST_MARK_GAP = 0.4  # em between two marks of a row; closer marks are drawn once
 EVEN, ROOMY = 2.0, 3.4  # em: smallest and largest height of layers' rows
@@ -48,7 +50,7 @@ class TimelineLayout:
         room = imgui.get_content_region_avail()
         layers = project.document.layers
         self.has_names = len(layers) > 1 or any(map(has_lanes, layers))
-        self.has_names |= bool(project.document.camera)
+        self.has_names |= bool(project.document.camera or project.document.sounds)
         names = min(NAMES * look.em, NAMES_SHARE * room.x) if self.has_names else 0.0
         self.size = ImVec2(room.x - names, room.y)
         self.left, self.top = self.corner.x + names, self.corner.y
@@ -58,7 +60,10 @@ class TimelineLayout:
         marks = SMALL_MARKS if self.is_cramped else MARKS
         self.markers_top = self.ruler_top + RULER * look.em
         self.camera_top = self.markers_top + bool(project.document.markers) * marks * look.em
-        self.track_top = self.camera_top + bool(project.document.camera) * THIN * look.em
+        self.sounds_top = self.camera_top + bool(project.document.camera) * THIN * look.em
+        count = len(project.document.sounds)
+        all_sounds = min(SOUND * look.em * count, SOUNDS_SHARE * self.size.y)
+        self.track_top = self.sounds_top + all_sounds
         is_whole = self.is_cramped or project.timeline.time_range is None
         self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
         self.rows: list[LayerRow] = []
@@ -89,7 +94,12 @@ class TimelineLayout:
         overflow = max(others + len(shown) * tall - room, 0.0)
         top = self.track_top - min(self.project.timeline.scrolled * em, overflow)
         if project.document.camera:
-            self._lay_lane(Channel(CAMERA), None, self.camera_top, self.track_top)
+            self._lay_lane(Channel(CAMERA), None, self.camera_top, self.sounds_top)
+        sounds = project.document.sounds
+        height = (self.track_top - self.sounds_top) / max(len(sounds), 1)
+        for index, sound in enumerate(sounds):
+            low = self.sounds_top + index * height
+            self._lay_lane(Channel(VOLUME, part=sound.name), None, low, low + height)
         for row in tree:
             layer = row.layer
             if layer is None:
@@ -125,10 +135,14 @@ class TimelineLayout:
             layer=layer,
             top=top,
             bottom=bottom,
-            is_chosen=channel == self.project.channel,
+            is_chosen=channel in (self.project.channel, self.project.selection.channel),
             track=track_in(self.project.document, channel),
         )
         self.lanes.append(lane)
+
+    @property
+    def sound_lanes(self) -> list[ChannelLane]:
+        return [lane for lane in self.lanes if lane.channel.kind is VOLUME]
 
     @property
     def pointed_row(self) -> LayerRow | ChannelLane | GroupRow:

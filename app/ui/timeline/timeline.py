@@ -19,6 +19,7 @@ from app.ui.timeline.rows.background import draw_key_box, draw_track_background
 from app.ui.timeline.rows.cycles import draw_cycle_bars
 from app.ui.timeline.rows.lanes import draw_lane_keys
 from app.ui.timeline.rows.layers import draw_layer_rows
+from app.ui.timeline.rows.sounds import draw_sound_lanes
 from app.ui.timeline.ruler.edges import draw_range_edges
 from app.ui.timeline.ruler.markers import draw_markers
 from app.ui.timeline.ruler.ruler import draw_overview, draw_playhead, draw_ruler
@@ -45,6 +46,7 @@ def _draw_track(bands: TimelineLayout, frame: int) -> list[Action]:
     actions = draw_ruler(bands, frame)
     actions += draw_track_background(bands)
     actions += draw_layer_rows(bands, frame)
+    actions += draw_sound_lanes(bands)
     actions += _navigate(bands)
     actions += draw_pose_segments(bands)
     actions += draw_cycle_bars(bands)
@@ -208,7 +210,9 @@ def _hint_of_place(bands: TimelineLayout) -> str:
         return _("Click a layer to see its handles and keys, wheel to see more layers")
     if y < bands.ruler_top:
         return _("Drag the ends of the preview range, double-click to play all frames")
-    if bands.camera_top <= y < bands.track_top:
+    if bands.sounds_top <= y < bands.track_top:
+        text = _("Drag a sound to move it, drag its ends to cut it, right-click for more")
+    elif bands.camera_top <= y < bands.sounds_top:
         text = _("Click a camera key to go there, drag to move it, right-click for more")
     elif bands.markers_top <= y < bands.camera_top:
         text = _("Click a marker to go there, drag it to move it, double-click to name it")

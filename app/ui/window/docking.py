@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
+from app.editor import Project
 from app.texts import _
 from app.ui.panel import Panel, is_in_front
 from app.ui.style.theme import FONT_SIZE
@@ -48,9 +49,11 @@ class Docking:
         layout.dockable_windows = [_dockable(panel, draw) for panel in self._panels]
         return layout
 
-    def begin_frame(self, scale: float) -> None:
-        """Fit sizes to the window and the interface scale."""
+    def begin_frame(self, scale: float, project: Project | None) -> None:
+        """Show the tabs of a project. Fit sizes to the window and the interface scale."""
         layout = hello_imgui.get_runner_params().docking_params
+        for panel, tab in zip(self._panels, layout.dockable_windows, strict=True):
+            tab.is_visible = panel.has_tab(project)
         room = imgui.get_io().display_size
         around = (room.x, room.y, scale)
         if around != self._around or imgui.is_any_mouse_down() or layout.layout_reset:
@@ -70,7 +73,10 @@ class Docking:
         """Choose the labels of the next frame. A tab with only an icon has its title as tooltip."""
         shown = hello_imgui.get_runner_params().docking_params.dockable_windows
         windows = self._windows()
-        nodes = [None if window is None else window.dock_node for window in windows]
+        nodes = [
+            None if window is None or not tab.is_visible else window.dock_node
+            for window, tab in zip(windows, shown, strict=True)
+        ]
         places = [
             None if node is None else (node.id_, node.size.x, node.selected_tab_id)
             for node in nodes
@@ -144,6 +150,10 @@ class Docking:
 def _dockable(panel: Panel, draw: Callable[[Panel], None]) -> hello_imgui.DockableWindow:
     window = hello_imgui.DockableWindow(panel.label, panel.place, partial(draw, panel))
     window.can_be_closed = False
+    window.is_visible = panel.has_tab(None)
+    if not window.is_visible:
+        # Its tab appears without hiding the one in front.
+        window.imgui_window_flags = imgui.WindowFlags_.no_focus_on_appearing
     if panel.place == "MainDockSpace":
         window.imgui_window_flags = (
             imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
+from operator import attrgetter
 from pathlib import Path
 
 from imgui_bundle import (  # before glfw: it brings the library itself
@@ -14,6 +15,7 @@ from app.editor.layering.pictures import drop_files
 from app.ui.panels.layers.tab import draw_layers_panel
 from app.ui.panels.motion_preset.tab import draw_motion_panel
 from app.ui.panels.pose_library.tab import draw_poses_panel
+from app.ui.panels.sound.tab import draw_sound_panel
 
 import glfw  # isort: skip
 
@@ -45,17 +47,12 @@ from app.ui.window.window_frame import WindowFrame
 from engine.arrays import Bytes
 
 SIZE = (1280, 800)
+SOUNDS = attrgetter("document.sounds")
 PAUSE = 0.1  # seconds between frames that only update the time of a job
 
 
 class Window:
-    """Owner of the OpenGL objects of one window.
-
-    Parameters
-    ----------
-    connect : callable
-        Called once ImGui has made the OpenGL context.
-    """
+    """Owner of the OpenGL objects of one window; `connect` is called in its OpenGL context."""
 
     def __init__(self, session: Session, connect: Callable[[], Renderer]) -> None:
         self.session = session
@@ -222,6 +219,7 @@ class Window:
             Panel(N_("Distortion"), icons.ICON_FA_CHART_LINE, draw_distortion_panel),
             Panel(N_("Mesh"), icons.ICON_FA_SHAPES, domain.draw_domain_panel),
             Panel(N_("Cut-out"), icons.ICON_FA_SCISSORS, cut_out.draw_cut_out_panel),
+            Panel(N_("Sound"), icons.ICON_FA_MUSIC, draw_sound_panel, is_needed=SOUNDS),
             Panel(N_("Export"), icons.ICON_FA_FILE_EXPORT, export.draw_export_panel),
         ]
 

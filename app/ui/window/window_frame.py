@@ -19,6 +19,7 @@ from app.editor.actions import playback, tutorials
 from app.editor.actions.dialog_actions import close_dialog
 from app.editor.actions.posing.pose_solver import stop_finishing_pose
 from app.editor.actions.project_files import autosaving, saving
+from app.editor.actions.timing import sound_playback
 from app.editor.actions.updates import frame_update
 from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
@@ -211,12 +212,13 @@ class WindowFrame:
         session, project = self.session, self.session.project
         self._seen, self._places = self._places, {}
         self._appearance.begin_frame()
-        self._docking.begin_frame(interface_scale(session.settings.preferences.scale))
+        self._docking.begin_frame(interface_scale(session.settings.preferences.scale), project)
         # The tabs that show these set them again in every frame.
         if session.export.frame_box is not None:
             session.export.show_frame_box(None)
         if project is not None and project.layer_list.pointed_layer is not None:
             project.layer_list.point_at(None)
+        sound_playback.play_heard_sounds(session)
         if project is not None and project.timeline.playhead.since is not None:
             playback.stop_playback_at_end(session)
             # Before the panels, which read the playhead's frame.

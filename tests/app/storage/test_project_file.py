@@ -790,7 +790,7 @@ def test_every_field_is_needed(tmp_path, members):
     kept |= {"background", "enclosed", "mask", "strokes", "holes", "toggled_holes", "stale"}
     kept |= {"cut_lines", "parted", *CLOCKS}
     # A channel without a known kind is kept as it is.
-    kept |= {"sounds", "mouths", "volume"}
+    kept |= {"sounds", "mouths", "volume", "volume_keys"}
     kept_channels = {"kind", "part", "easing"}
     missing = [
         way

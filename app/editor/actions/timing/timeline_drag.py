@@ -23,12 +23,14 @@ from app.document import (
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action
 from app.editor.actions.timing.keys import edit_timing
+from app.editor.actions.timing.sounds import drag_sound
 from app.editor.parts.timeline import (
     CycleDrag,
     EdgeDrag,
     KeyBox,
     KeyDrag,
     ScrubDrag,
+    SoundDrag,
     TimeDrag,
     TimeGesture,
     TimeRangeView,
@@ -217,6 +219,8 @@ def _moved(before: Document, drag: TimeDrag, frame: float) -> tuple[TimeDrag, Co
             if not by:
                 command = Command(command.label, lambda document: document)
             return None if by == drag.by else (replace(drag, by=by), command)
+        case SoundDrag():
+            return drag, drag_sound(before, drag, frame)
     raise AssertionError("unreachable: there are no other drags")
 
 

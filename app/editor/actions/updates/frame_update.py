@@ -9,6 +9,7 @@ from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_solver import update_drag
 from app.editor.actions.posing.reach_limit import show_stopped_drag
+from app.editor.actions.timing import sounds
 from app.editor.actions.tracking.recording import update_track_keys
 from app.editor.actions.updates.stage_jobs import due_jobs, is_worth_preparing
 from app.editor.parts.timeline import measure_key_errors
@@ -77,6 +78,7 @@ STEPS: tuple[Callable[[Session], None], ...] = (
     resolving.rebuild_changed_cut_out,
     preset_setup.update_motion_setup,
     ask_for_missing,
+    sounds.update_waveforms,
     settle_shown,
 )
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import (
+    VOLUME,
     BaseKey,
     Layer,
     TangentMode,
@@ -39,6 +40,7 @@ from app.ui.timeline.keys import (
 from app.ui.timeline.layout import THIN, TimelineLayout, format_seconds
 from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu
 from app.ui.timeline.row import ChannelLane, LayerRow, find_least_gap, has_lanes
+from app.ui.timeline.rows.sounds import draw_mute_button, draw_sound_background
 from app.ui.timeline.rows.tracks import draw_track_range, format_track_name
 
 RADIUS, GRIP = 0.4, 0.55  # em: half a key's diagonal, and half its hit box
@@ -87,7 +89,7 @@ def name_lane(layer: Layer | None, lane: ChannelLane) -> str:
         return format_track_name(layer, lane.track)
     name = str(channel.part) if channel.kind.of_sliders else _(channel.kind.label)
     if layer is None or not isinstance(channel.part, int):
-        return name
+        return name if channel.part is None else str(channel.part)
     return f"{name}: {layer.handle(channel.part).name}"
 
 
@@ -111,7 +113,8 @@ def _draw_name(bands: TimelineLayout, lane: ChannelLane) -> list[Action]:
         else _("Click to select the channel: then new keys go to the channel")
     )
     is_on = track is None or track.enabled
-    room = high.x - low.x - (2.0 if track is not None else 0.0) * em
+    has_button = track is not None or lane.channel.kind is VOLUME
+    room = high.x - low.x - (2.0 if has_button else 0.0) * em
     with push_text_size(SMALL):
         top = lane.middle - imgui.get_text_line_height() / 2
         text = shorten_text(name_lane(layer, lane), room - 3.4 * em)
@@ -119,6 +122,8 @@ def _draw_name(bands: TimelineLayout, lane: ChannelLane) -> list[Action]:
         draw_list.add_text(place, colour_u32(palette.dim), _icon(lane))
         colour = colour_u32(palette.text if is_on else palette.dim)
         draw_list.add_text(ImVec2(place.x + 1.6 * em, top), colour, text)
+    if lane.channel.kind is VOLUME:
+        return actions + draw_mute_button(bands, lane, high)
     return actions + (_draw_switch(bands, lane, high, top) if track is not None else [])
 
 
@@ -160,6 +165,8 @@ def draw_lane_backgrounds(bands: TimelineLayout, lanes: Sequence[ChannelLane]) -
         draw_list.add_line(ImVec2(low.x, high.y), high, colour_u32(palette.line))
         if lane.layer is not None and lane.track is not None:
             draw_track_range(bands, lane, lane.layer, lane.track)
+        elif lane.channel.kind is VOLUME:
+            draw_sound_background(bands, lane)
         elif lane.channel.kind.is_held:
             _draw_held_values(bands, lane)
         else:
