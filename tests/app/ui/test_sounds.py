@@ -393,7 +393,8 @@ def test_export_tab_leaves_the_sounds_out(window, spoken):
     assert not spoken.document.export.sound
 
 
-def test_tab_of_sounds_is_there_once_there_is_a_sound(window, bent):
+@pytest.mark.usefixtures("bent")
+def test_tab_of_sounds_is_there_once_there_is_a_sound(window):
     window.show_tab("Handle")
 
     def has_tab():
