@@ -16,16 +16,19 @@ nothing where the blend is within the limits. Not in the paper.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple, Self
 
 import numpy as np
+import shapely
 
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.dirichlet import HilbertTransform
 from engine.dirichlet.panels import Panels
+from engine.geometry import as_xy
 from engine.interpolation.inbetweens import PointValues
 from engine.interpolation.series.residual import combine_arrays
-from engine.maps import Bounds, HarmonicMap, derivatives_of
+from engine.maps import Boundary, HarmonicMap, LocalBounds, derivatives_of
 
 # Part of η_max by which ρ lowers |η| further once η_max is exceeded. At η_max the interval is a
 # single value, which a polynomial cannot follow.
@@ -69,25 +72,33 @@ class OutlineBlend:
 class OutlinePoses:
     """Poses on the boundary, at the checked places (p c,) of the transform's panels.
 
-    `loops` (p,) are as in `OutlineBlend`; `log_modulus` and `conj_eta` (q, p c) are ln |f_z| and
-    conj(η) of each pose.
+    `bounds` are numbers, or arrays (p, c). `loops` (p,) are as in `OutlineBlend`; `log_modulus` and
+    `conj_eta` (q, p c) are ln |f_z| and conj(η) of each pose.
     """
 
     transform: HilbertTransform
-    bounds: Bounds
+    bounds: LocalBounds
     loops: Indices
     log_modulus: Floats
     conj_eta: Complexes
 
     @classmethod
-    def of(cls, maps: Sequence[HarmonicMap], transform: HilbertTransform, bounds: Bounds) -> Self:
-        """Evaluate poses (q,) on the boundary."""
+    def of(
+        cls,
+        maps: Sequence[HarmonicMap],
+        transform: HilbertTransform,
+        boundary: Boundary,
+        bounds: LocalBounds,
+    ) -> Self:
+        """Evaluate poses (q,) on the boundary; bounds may be arrays at its own samples."""
         panels = transform.panels
-        fz, fzbar = derivatives_of(maps, transform.centre + panels.checked.ravel())
+        checked = transform.centre + panels.checked
+        loops = np.searchsorted(panels.starts, np.arange(len(panels)), "right") - 1
+        fz, fzbar = derivatives_of(maps, checked.ravel())
         return cls(
             transform=transform,
-            bounds=bounds,
-            loops=freeze(np.searchsorted(panels.starts, np.arange(len(panels)), "right") - 1),
+            bounds=_bounds_at(bounds, boundary, checked, loops),
+            loops=freeze(loops),
             log_modulus=freeze(np.ascontiguousarray(np.log(np.abs(fz)))),
             conj_eta=freeze(np.ascontiguousarray(fz * fzbar.conj())),
         )
@@ -102,28 +113,48 @@ class OutlinePoses:
         conj_eta = panels.interpolate(own.real) + 1j * panels.interpolate(own.imag)
         conj_eta += combine_arrays(weights[used], self.conj_eta[used]).reshape(shape)
         eta = np.abs(conj_eta)
-        rho = eta_scale(float(eta.max()), self.bounds)
+        rho = eta_scale(eta, self.bounds)
         low, high = log_modulus_limits(rho * eta, self.bounds)
         return OutlineBlend(
             panels=panels, loops=self.loops, log_modulus=logarithm, low=low, high=high, rho=rho
         )
 
 
-def largest_eta(bounds: Bounds) -> float:
-    """Return η_max."""
+def _bounds_at(
+    bounds: LocalBounds, boundary: Boundary, points: Complexes, loops: Indices
+) -> LocalBounds:
+    """Return bounds at points (p, c) of loops (p,), between a boundary's own samples."""
+    limits = bounds.k, bounds.sigma_a, bounds.sigma_b
+    if not any(isinstance(limit, np.ndarray) for limit in limits):
+        return bounds
+    own, ends = boundary.original_samples
+    found = np.empty((3, *points.shape))
+    for number, (start, end) in enumerate(pairwise(ends)):
+        corners = boundary.loops[number]
+        ring = shapely.linestrings(as_xy(np.append(corners, corners[0])))
+        length, here = shapely.length(ring), loops == number
+        known, wanted = (
+            shapely.line_locate_point(ring, shapely.points(as_xy(each.ravel())))
+            for each in (boundary.points[own[start:end]], points[here])
+        )
+        for row, limit in zip(found, limits, strict=True):
+            values = np.broadcast_to(limit, len(own))[start:end]
+            row[here] = np.interp(wanted, known, values, period=length).reshape(-1, points.shape[1])
+    k, sigma_a, sigma_b = found
+    return LocalBounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
+
+
+def eta_scale(eta: Floats, bounds: LocalBounds) -> float:
+    """Return ρ for |η| on the boundary."""
     k, sigma_a, sigma_b = bounds.k, bounds.sigma_a, bounds.sigma_b
-    return min((sigma_a**2 - sigma_b**2) / 4, k * sigma_a**2 / (1 + k) ** 2)
-
-
-def eta_scale(eta: float, bounds: Bounds) -> float:
-    """Return ρ for the largest |η| on the boundary."""
-    beyond = eta / largest_eta(bounds) - 1.0
+    largest = np.minimum((sigma_a**2 - sigma_b**2) / 4, k * sigma_a**2 / (1 + k) ** 2)
+    beyond = float((eta / largest).max()) - 1.0
     if beyond <= 0.0:
         return 1.0
     return (1.0 - BACK * (1.0 - float(np.exp(-beyond / BACK)))) / (1.0 + beyond)
 
 
-def log_modulus_limits(eta: Floats, bounds: Bounds) -> tuple[Floats, Floats]:
+def log_modulus_limits(eta: Floats, bounds: LocalBounds) -> tuple[Floats, Floats]:
     """Return the ends of the interval of ln |f_z|, given |η| ≤ η_max."""
     k, sigma_a, sigma_b = bounds.k, bounds.sigma_a, bounds.sigma_b
     low = np.maximum((sigma_b + np.sqrt(sigma_b**2 + 4 * eta)) / 2, np.sqrt(eta / k))

@@ -16,7 +16,7 @@ from engine.dirichlet import Densities, HilbertTransform, Refinement
 from engine.errors import EngineError
 from engine.interpolation import SampledDomain
 from engine.interpolation.inbetweens import PointValues
-from engine.maps import Bounds, HarmonicMap
+from engine.maps import HarmonicMap, LocalBounds
 from engine.sliders.constraints import Constraints
 from engine.sliders.curb import Curb, OutlineBlend, OutlinePoses
 
@@ -81,7 +81,7 @@ class FrameSolver:
         turns: Indices,
         sites: SampledDomain,
         transform: HilbertTransform,
-        bounds: Bounds,
+        bounds: LocalBounds,
         pins: Complexes,
         *,
         is_anchored: bool = False,
@@ -96,6 +96,8 @@ class FrameSolver:
             Full turns of each pose beyond the shorter way.
         sites : SampledDomain
             Gives the boundary and the anchor.
+        bounds : LocalBounds
+            Numbers, or arrays with one limit for each of the boundary's own samples.
         pins : complex, shape (m,)
             Points of the domain at rest that keep their places.
         is_anchored : bool
@@ -111,7 +113,7 @@ class FrameSolver:
                 raise EngineError(OTHER_DOMAIN, number=number)
         sites.require_boundary(transform.loops)
         return cls(
-            outline=OutlinePoses.of(poses, transform, bounds),
+            outline=OutlinePoses.of(poses, transform, sites.boundary, bounds),
             constraints=Constraints.of(
                 poses, turns, sites, transform, pins, is_anchored=is_anchored
             ),

@@ -36,7 +36,7 @@ from engine.interpolation import (
     sample_domain,
     sample_keyframes,
 )
-from engine.maps import Boundary, Bounds, HarmonicMap
+from engine.maps import Boundary, Bounds, HarmonicMap, LocalBounds
 from engine.paths import root_sheets
 from engine.sliders import FrameSolver, SliderPoses
 
@@ -186,7 +186,7 @@ class PoseSampler:
         self,
         poses: Sequence[Pose],
         turns: Indices,
-        bounds: Bounds,
+        bounds: LocalBounds,
         pins: Complexes,
         *,
         is_anchored: bool,
@@ -195,11 +195,11 @@ class PoseSampler:
         maps = [self.samples(pose).map for pose in poses]
         content = digest(
             *(*self.domain.loops, *self.domain.cages, turns, pins),
+            *map(np.atleast_1d, (bounds.k, bounds.sigma_a, bounds.sigma_b)),
             *(each for f in maps for each in (f.phi, f.psi, f.logs)),
         )
-        key = ("slider", content, bounds, self.sites.anchor, is_anchored)
-        transform = self.known.transform
-        given = (maps, turns, self.sites, transform, bounds, pins)
+        key = ("slider", content, self.sites.anchor, is_anchored)
+        given = (maps, turns, self.sites, self.known.transform, bounds, pins)
         make = partial(FrameSolver.of, *given, is_anchored=is_anchored)
         return SAMPLED.find(key, make, nbytes_or_0)
 

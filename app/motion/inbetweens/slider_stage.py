@@ -5,7 +5,16 @@ from copy import copy
 
 import numpy as np
 
-from app.document import Clip, Layer, Pose, Variant, slider_poses, slider_weights_at
+from app.document import (
+    Clip,
+    Layer,
+    Pose,
+    Variant,
+    limits_along,
+    slider_poses,
+    slider_weights_at,
+    with_stiffness,
+)
 from app.motion.inbetweens.pins.auto_pins import BESIDE
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection, SolvedSliders
@@ -74,7 +83,7 @@ class SliderStage:
             solver = sampler.slider_solver(
                 poses,
                 turns,
-                layer.widest_bounds,
+                limits_along(layer, with_stiffness(layer, sampler.sites.boundary)),
                 _pins(layer, poses, sampler.sites.anchor),
                 is_anchored=layer.has_parent,
             )

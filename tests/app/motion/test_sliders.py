@@ -170,3 +170,17 @@ def test_window_shows_earlier_values_until_a_dragged_slider_is_solved():
     assert not late.is_current
     exact = Animation(clip_of(after, 0)).positions(10)
     assert_allclose(late.positions, exact, rtol=0, atol=1e-3)
+
+
+def test_sliders_keep_the_limits_of_stiff_parts():
+    outline = drawing().layers[0].domain.outline
+    stiffness = np.where(outline.imag > 60, 30.0, 1.0)
+    document = slid(-1.3, 1.3)
+    plain, stiff = animate(document), animate(with_layer(document, stiffness=stiffness))
+    top = outline.imag > 75
+
+    def reached(motion):
+        return motion.frame(10).k[4:][top].max()
+
+    assert reached(plain) > 0.15
+    assert reached(stiff) < 0.5 / np.sqrt(30) * 1.003

@@ -20,7 +20,7 @@ from engine.interpolation import (
     sample_domain,
     sample_keyframes,
 )
-from engine.maps import Boundary, Bounds, HarmonicMap, distortion
+from engine.maps import Boundary, Bounds, HarmonicMap, LocalBounds, distortion
 from engine.paths import root_sheets
 from engine.sliders import FrameSolver, SliderPoses
 
@@ -323,3 +323,19 @@ def test_slider_refuses_the_transform_of_another_outline():
     given = (maps_of("bar")[1:2], np.zeros(1, int), sites, transform_of("l"), Bounds())
     with pytest.raises(EngineError, match="Build the transform again"):
         FrameSolver.of(*given, np.empty(0, complex))
+
+
+def test_local_limits_hold_where_they_are():
+    boundary, plain = boundary_of("bar"), bounds_of("bar")
+    own, _ = boundary.original_samples
+    k = np.where(boundary.points[own].real < 0, 0.12, plain.k)
+    local = LocalBounds(k=k, sigma_a=plain.sigma_a, sigma_b=plain.sigma_b)
+    points = dense_points("bar")
+    poses = Slider("bar", points, maps_of("bar")[1:], local)
+    left, curbed = points.real < -0.2, 0
+    for weights in settings(6, seed=8):
+        frame, solution = poses.frame(weights)
+        curbed += solution.curbed > 0
+        assert frame.k[left].max() < 0.12 * (1 + OF_LIMITS)
+        assert excess_of(frame, plain) < OF_LIMITS
+    assert curbed > 2
