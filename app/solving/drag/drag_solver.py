@@ -50,9 +50,11 @@ class DragSolver:
         """
         rig = Rig.of(self.rig.layer, self.rig, pulled)
         posed, followed = self.posed.with_rig(rig).follow(targets)
-        wanted = posed.build_targets(followed, self.pins, hands)
-        state = self.state
+        state, now = self.state, posed.straighten(followed, self.state.map)
+        wanted = posed.build_targets(now, self.pins, hands)
         for _ in range(steps):
+            if now != followed and (now := posed.straighten(followed, state.map)) == followed:
+                wanted = posed.build_targets(followed, self.pins, hands)
             state = posed.deformer.step(state, wanted)
             if state.status.is_final:
                 break
@@ -80,7 +82,7 @@ class DragSolver:
 
     def out_of_reach(self, targets: Mapping[int, Target]) -> Mapping[int, float]:
         """Return how far ends of limbs stay off their targets, in pixels, by the bones alone."""
-        followed = self.posed.follow(targets)[1]
+        followed = self.posed.follow(targets := {**self.posed.start, **targets})[1]
         off = {i: abs(followed[i].position - targets[i].position) for i in self.posed.ends}
         return {i: error for i, error in off.items() if misses_target(self.rig.layer, error)}
 

@@ -68,13 +68,42 @@ def solve_limbs(
     """
     solved = dict(targets)
     for limb in limbs.limbs:
-        moved = {i for i in limb.chain.handles if start.get(i) != targets[i]}
+        handles = limb.chain.handles
+        moved = {i for i in handles if _position(start.get(i)) != targets[i].position}
         place = solved[limb.chain.root].position
         chain = _Chain(limb, joints, start, targets, frozenset(moved), place)
         found = chain.solved(is_end_locked=layer.is_locked(limb.chain.end))
         for identity, (place, side) in found.items():
             solved[identity] = replace(solved[identity], position=place, side=side)
     return solved
+
+
+def straighten_flipping(
+    limbs: Limbs, joints: Mapping[int, complex], targets: Mapping[int, Target]
+) -> Mapping[int, Target]:
+    """Return the targets with limbs straight that still bend to the other side.
+
+    A limb changes its side through its straight pose, where its end leaves its target for a while.
+    `joints` are the present places of the chains' handles.
+    """
+    straight = dict(targets)
+    for limb in limbs.limbs:
+        handles = limb.chain.handles
+        wanted, present = (
+            [
+                bend_side(*(places[i] for i in triple))
+                for triple in zip(handles, handles[1:], handles[2:], strict=False)
+            ]
+            for places in ({i: targets[i].position for i in handles}, joints)
+        )
+        products = [one * other for one, other in zip(wanted, present, strict=True)]
+        if min(products, default=0) < 0 and max(products) <= 0:
+            root, end = (targets[i].position for i in (handles[0], handles[-1]))
+            way, done = (end - root) / (abs(end - root) or 1.0), 0.0
+            for identity, length in zip(handles[1:], limb.lengths, strict=True):
+                done += length
+                straight[identity] = replace(targets[identity], position=root + done * way)
+    return straight
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,6 +120,8 @@ class _Chain:
     def solved(self, *, is_end_locked: bool) -> dict[int, tuple[complex, int | None]]:
         """Return the place and the side of each handle after the root."""
         handles, lengths = self.limb.chain.handles, self.limb.lengths
+        if len(lengths) > 2 and any(map(self._is_flipped, handles[1:-1])):
+            return self._mirrored().solved(is_end_locked=is_end_locked)
         pulled = [i for i, each in enumerate(handles[1:-1], 1) if each in self.moved]
         if not pulled or handles[-1] in self.moved or is_end_locked:
             last = len(lengths)
@@ -115,6 +146,21 @@ class _Chain:
         sides = [side if len(lengths) == 2 else None] * (len(lengths) - 1) + [None]
         return dict(zip(handles[1:], zip(places, sides, strict=True), strict=True))
 
+    def _is_flipped(self, identity: int) -> bool:
+        """Whether a joint gets another side than at the start."""
+        before, given = self.start.get(identity), self.targets[identity].side
+        return given is not None and (before is None or before.side != given)
+
+    def _mirrored(self) -> "_Chain":
+        """Return the chain with its joints mirrored at the way from root to end."""
+        root, end = (self.joints[i] for i in (self.limb.chain.root, self.limb.chain.end))
+        way = end - root
+        joints = {
+            i: root + way * ((self.joints[i] - root) / way).conjugate()
+            for i in self.limb.chain.handles
+        }
+        return replace(self, joints={**self.joints, **joints}, start=self.targets)
+
     def _start(self, identity: int) -> complex:
         """Return the place of a handle from which its chain is solved."""
         if identity in self.moved:
@@ -129,12 +175,16 @@ class _Chain:
         if len(handles) < 3:
             return 1
         middle = handles[1]
-        given, before = self.targets[middle], self.start.get(middle)
+        given = self.targets[middle]
         present = bend_side(*(self.joints[each] for each in handles[:3]))
         sides = [given.side, present, bend_side(*self.limb.places[:3]), 1]
-        if middle in self.moved and (before is None or before.side == given.side):
+        if middle in self.moved and not self._is_flipped(middle):
             sides.insert(0, bend_side(self.root, given.position, self.targets[handles[2]].position))
         return next(side for side in sides if side)
+
+
+def _position(target: Target | None) -> complex | None:
+    return None if target is None else target.position
 
 
 class _RigidMotion(NamedTuple):

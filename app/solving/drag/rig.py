@@ -17,7 +17,7 @@ from app.document import (
     stiffness_source,
     with_stiffness,
 )
-from app.solving.drag.limb_targets import carry_body, solve_limbs
+from app.solving.drag.limb_targets import carry_body, solve_limbs, straighten_flipping
 from app.solving.drag.limbs import END_FORCE, PosedLimbs, locate_joints
 from engine.deform import Armature, BoundedPull, Deformer, Handles, HandleTargets, State
 from engine.errors import EngineError
@@ -146,6 +146,17 @@ class PosedRig:
         posed = self.keeping_body(body.is_rigid)
         joints = posed.limbs.joints if posed.limbs is not None else {}
         return posed, solve_limbs(layer, limbs, joints, self.start, body.targets)
+
+    def straighten(self, targets: Mapping[int, Target], shape: HarmonicMap) -> Mapping[int, Target]:
+        """Return targets of `follow` for the next steps from a map: a limb flips when straight."""
+        limbs = self.rig.limbs
+        if limbs is None or self.limbs is None:
+            return targets
+        joints = self.limbs.joints
+        if straighten_flipping(limbs, joints, targets) == targets:
+            return targets
+        now = locate_joints(limbs, self.deformer.boundary, shape)
+        return straighten_flipping(limbs, now, targets)
 
     @property
     def ends(self) -> frozenset[int]:

@@ -3,7 +3,7 @@
 from app.editor.actions import dialog_actions, editing, playback, tutorials, viewing
 from app.editor.actions.action_spec import ActionSpec
 from app.editor.actions.layer_setup import cut_out_editing, handle_editing, stiffness_editing
-from app.editor.actions.posing import handles, pose_drag
+from app.editor.actions.posing import handles, limb_editing, pose_drag
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
 from app.editor.actions.project_files import export_settings, exporting, files, recovery, saving
 from app.editor.actions.timing import channel_keys, cycles, keys, sounds, timeline_drag, tracks
@@ -46,6 +46,7 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
             stiffness_editing.MAKE_STIFF,
             stiffness_editing.DRAW_BONES,
             stiffness_editing.add_bone_between_selected,
+            limb_editing.flip_selected_joints,
         ),
         (handle_editing.group_handles, handle_editing.ungroup_handles),
         (handles.mirror_handles, handle_editing.select_mirrored),

@@ -15,6 +15,7 @@ from app.editor.actions.posing.handles import (
     suggest_handles,
     toggle_anchor_at_handle,
 )
+from app.editor.actions.posing.limb_editing import flip_selected_joints
 from app.editor.actions.posing.pose_drag import free_rotation, pin_selected_handles
 from app.editor.actions.timing import keys, tracks
 from app.editor.layering.layer_selection import reset_tree_rows
@@ -253,6 +254,7 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
         pin_selected_handles,
         handle_editing.toggle_handles_locked,
         tracks.key_selected_handles,
+        *((flip_selected_joints,) if identity in layer.bone_joints else ()),
     ):
         actions += draw_action_item(session, spec)
     actions += _hold(handle, chosen) + _depth(session, screen, handle)

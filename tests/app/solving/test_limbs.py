@@ -27,6 +27,7 @@ HANDLES = {
     "elbow": [295, 302],
     "hand": [365, 300],
 }
+WRISTED = {**HANDLES, "wrist": [335, 301]}
 LEG, ARM = ["hip", "knee", "foot"], ["shoulder", "elbow", "hand"]
 
 
@@ -239,3 +240,15 @@ def test_limbs_keep_their_lengths_between_keys():
         worst.append(np.abs(spans - 1).max())
     assert worst[0] < 0.02
     assert worst[0] < 0.5 * worst[1]
+
+
+def test_a_key_with_a_side_alone_bends_the_limb_where_it_is():
+    for chain, handles in ((ARM, HANDLES), (["shoulder", "elbow", "wrist", "hand"], WRISTED)):
+        first = {"frame": 9, "targets": {"hand": [345, 320]}}
+        layer, _ = posed({"frame": 0}, first, bones=[chain], handles=handles)
+        triple = chain[:3] if len(chain) == 3 else [chain[0], chain[1], chain[3]]
+        side = bend_side(*(places(layer)[name] for name in triple))
+        keys = [{"frame": 0}, first, {"frame": 18, "side": {"elbow": -side}}]
+        after, _ = posed(*keys, bones=[chain], handles=handles)
+        assert bend_side(*(places(after)[name] for name in triple)) == -side
+        assert abs(places(after)["hand"] - places(layer)["hand"]) < 1

@@ -35,6 +35,7 @@ WITHOUT_PROJECT = {
 DISABLED = {  # while two handles of a bar with two keys are selected
     *(
         "Redo",
+        "Bend other way",
         "Copy poses of all layers",
         "Paste",
         "Paste flipped",

@@ -13,6 +13,7 @@ from app.texts import N_, _, ngettext
 # Relaxes the limits, and drags handles once more to their original targets.
 RelaxLimits = Callable[[Session, Mapping[int, Target]], None]
 STOPPED_AT_LIMIT = N_("{handle} stopped at its stretch limit.")
+STOPPED_BY_BONES = N_("{handle} stopped where its bones reach.")
 STOPPED_BY_HANDLES = N_("{handle} stopped where the other handles hold the shape.")
 
 
@@ -38,7 +39,10 @@ def show_stopped_drag(session: Session, project: Project, loosen: RelaxLimits) -
         return
     name, others = layer.handle(short[0]).name, len(short) - 1
     is_at_limits = measure_target_errors(layer, pose).at_limits
-    if not others:
+    is_beyond_bones = drag.solver is not None and short[0] in drag.solver.out_of_reach(asked)
+    if is_beyond_bones:
+        text, is_at_limits = _(STOPPED_BY_BONES), False
+    elif not others:
         text = _(STOPPED_AT_LIMIT) if is_at_limits else _(STOPPED_BY_HANDLES)
     elif is_at_limits:
         text = ngettext(

@@ -9,6 +9,7 @@ from sessions import run_update_steps, session_of, settle
 from app.document import NATURAL, RUBBERY
 from app.document.commands import handle_commands, shape_commands, stiffness_commands
 from app.editor.actions import editing, playback
+from app.editor.actions.posing.limb_editing import flip_selected_joints
 from app.editor.actions.posing.pose_drag import solve_pose_again
 from app.editor.actions.posing.reach_limit import STOPPED_AT_LIMIT
 from app.editor.tools import tool_pointer
@@ -238,6 +239,41 @@ def test_a_hand_bends_its_arm_and_stays_within_reach(tmp_path):
     assert abs(joint - root) == pytest.approx(76, abs=1)
     assert abs(hand - joint) == pytest.approx(76, abs=1.5)
     assert abs(joint - 100 - 40j) > 20
+    beyond = drag(session, 2, 400j)
+    tool_pointer.release_pointer(session, beyond)
+    settle(session)
+    assert session.notices.toasts[-1].text.endswith("stopped where its bones reach.")
+
+
+def test_a_joint_bends_to_its_other_side_by_a_click(tmp_path):
+    picture = drawn(([(20, 120), (100, 112), (180, 120)], 24))
+    document = still_document(picture)
+    for place in (24 + 40j, 100 + 48j, 176 + 40j):
+        document = handle_commands.add_handle(0, place)(document)
+    for ends in ((0, 1), (1, 2)):
+        document = stiffness_commands.add_bone(0, ends, 10.0)(document)
+    session = session_of(document, tmp_path, picture)
+    project = session.project
+    asked = drag(session, 2, -16 + 0j)
+    tool_pointer.release_pointer(session, asked)
+    settle(session)
+    assert flip_selected_joints.why_disabled(session, project)
+    editing.select_handles(session, frozenset({1}))
+    assert not flip_selected_joints.why_disabled(session, project)
+
+    def joint():
+        targets = project.layer.key(0).pose.targets
+        assert abs(targets[2].position - 160 - 40j) < 1
+        return targets[1].position
+
+    before = joint()
+    flip_selected_joints(session)
+    settle(session)
+    after = joint()
+    assert after == pytest.approx(before.conjugate() + 80j, abs=1.5)
+    flip_selected_joints(session)
+    settle(session)
+    assert joint() == pytest.approx(before, abs=1.5)
 
 
 @pytest.mark.parametrize("session", ["person"], indirect=True)
