@@ -182,8 +182,9 @@ class FrameSolver:
             densities, lacking = self._densities(curb), np.zeros(holes)
             if densities is not None:
                 lacking = densities.lacking[:, 0]
-            start = replace(found, x=x)
-            found = constraints.step(base, weights, blend.rho, densities, start, force)
+            if solutions or densities is not None or blend.rho < 1.0:
+                start = replace(found, x=x)
+                found = constraints.step(base, weights, blend.rho, densities, start, force)
             miss = np.append(-lacking, found.x - x)
             off = float(np.abs(np.append(lacking, real_parts(found.x - x))).max())
             beyond = off + curb.excess if found.is_finished else np.inf
