@@ -129,6 +129,9 @@ class CachedFrames:
         triangles = self.mesh.order.triangles(clip, frame)
         found = instead or self._find(clip, moment)
         if isinstance(found, Pose):
+            known = self._released_segment(clip, moment, found)
+            if known is not None and known.series is not None:
+                return StreamedVertices(known.series, known.distortions, moment.weight, triangles)
             positions = self._pose_vertices(found)
         elif isinstance(found, SingleFrame):
             positions = found.positions
@@ -159,6 +162,15 @@ class CachedFrames:
             if known.single_frame and known.single_frame.weight == moment.weight
             else None
         )
+
+    def _released_segment(
+        self, clip: Clip, moment: SegmentTime, pose: Pose
+    ) -> CachedSegment | None:
+        """Return the segment whose series shows a key's pose while the mesh is released, if any."""
+        if not self.mesh.is_released or pose is not keyed_pose_at(clip, moment):
+            return None
+        known = self.memory.find(self.memory.keys_of(clip)[moment.segment])
+        return known if known is not None and known.is_streamed else None
 
     def _pose_vertices(self, pose: Pose) -> Complexes:
         if self.samples_poses and self.sampler is not None:

@@ -184,6 +184,8 @@ class InbetweenCache(CachedFrames):
             and (known.series is None or known.is_streamed)
         ]
         own = self.sampler.extension_bytes if self.sampler is not None else 0
+        # Without segments, no series shows the pose.
+        own += self.mesh.coordinates_bytes if memory.keys_of(clip) else 0
         return own + sum(memory.sizes_of(key)[0] for key in passing)
 
     def release_intermediates(self) -> None:
@@ -191,6 +193,8 @@ class InbetweenCache(CachedFrames):
         for key, known in self.memory.items():
             if known.inbetweens is not None and known.is_streamed:
                 self.memory.put(key, known._replace(inbetweens=None, single_frame=None))
+        if self.memory.items() and all(known.is_streamed for _, known in self.memory.items()):
+            self.mesh.forget_coordinates()
         if self.sampler is not None:
             prepared = (known.poses for _, known in self.memory.items() if known.inbetweens)
             self.sampler.keep_only(frozenset(chain(*prepared)))

@@ -1,7 +1,7 @@
 """A mesh that a pose deforms, and points located on the mesh."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 
 import numpy as np
@@ -56,12 +56,13 @@ class MeshPoints:
         return angles
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False)
 class DeformMesh:
     """A mesh of a domain, which any pose deforms."""
 
     domain: MeshedDomain  # with the displayed mesh, which may be coarser than the layer's own
     source: MeshedDomain  # the layer's own domain
+    is_released: bool = field(init=False, default=False)  # whether its coordinates were freed
 
     @cached_property
     def order(self) -> TriangleOrder:
@@ -100,7 +101,18 @@ class DeformMesh:
     def prepared(self) -> "DeformMesh":
         """Return the mesh, ready to be deformed without delay; on a worker thread."""
         _ = self.coordinates
+        self.is_released = False
         return self
+
+    @property
+    def coordinates_bytes(self) -> int:
+        """Bytes of the coordinates; 0 unless they are prepared."""
+        return self.coordinates.nbytes if "coordinates" in self.__dict__ else 0
+
+    def forget_coordinates(self) -> None:
+        """Free the coordinates, which can be computed again soon."""
+        self.is_released = True
+        self.__dict__.pop("coordinates", None)
 
     def locate(self, points: Complexes, positions: Complexes) -> MeshPoints:
         """Locate points (p,) in the mesh with vertices at `positions` (v,).

@@ -326,8 +326,11 @@ def test_at_rest_series_alone_show_all_of_what_nobody_edits(clip, prepared):
     prepared.release_intermediates()
     assert prepared.releasable_bytes(clip) == 0
     assert prepared.nbytes < size / 2
+    assert prepared.mesh.coordinates_bytes == 0
     for frame, places in zip(frames, before, strict=True):
-        assert np.array_equal(prepared.positions(clip, frame), places)
+        # Keys, too, are shown by their series.
+        assert isinstance(prepared.vertices(clip, frame), StreamedVertices)
+        np.testing.assert_allclose(prepared.positions(clip, frame), places, rtol=0, atol=1e-4)
         assert prepared.is_exact(clip, frame)
     assert prepared.has(clip)
     assert prepared.velocity_shares(clip).keys() == {10, 20}
@@ -425,6 +428,7 @@ def test_the_nearest_interval_is_built_first(clip, prepared):
         assert isinstance(vertices, StreamedVertices)
         assert_allclose(vertices.positions, expected, rtol=0, atol=2e-6 * size)
         assert vertices.derivatives is None
+    prepared.mesh.prepared()
     assert isinstance(prepared.vertices(clip, 20), VertexArray)  # a key itself
 
 

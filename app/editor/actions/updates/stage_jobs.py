@@ -162,6 +162,9 @@ def _prepare(
 
         work = partial(_prepared, make, domain)
         return _interval_job(session, kind, runtime, clip, work=work, done=begin)
+    if runtime is project.layer_runtime and store.mesh.is_released:
+        prepare_mesh, done = store.mesh.prepared, lambda _mesh: None
+        return _interval_job(session, kind, runtime, clip, work=prepare_mesh, done=done)
     is_edited = runtime is project.layer_runtime and not is_fine
     lacking = store.missing_segments(clip, frame, is_edited=is_edited)
     if store.lacks_sampler(clip):
