@@ -18,6 +18,7 @@ from app.document import (
     DRAW_ORDER,
     MARKER,
     OPACITY,
+    SLIDER,
     SWITCH,
     TRACK,
     TRANSFORM,
@@ -28,12 +29,15 @@ from app.document import (
     Cue,
     DrawOrder,
     Mouths,
+    Slider,
+    SliderPose,
     Sound,
     SoundFile,
     Transform,
     VolumeKeys,
     channel_commands,
     pose_channel,
+    slider_commands,
 )
 from app.document.channels.easing import HOLD, LINEAR, PRESETS, Easing
 from app.document.channels.springs import Spring
@@ -134,6 +138,7 @@ def random_command(rng: np.random.Generator, document: Document) -> Command:
         _random_material_command,
         _random_pose_command,
         _random_settings_command,
+        _random_slider_command,
         _random_track_command,
     )
     return makers[rng.integers(len(makers))](rng, document)
@@ -179,6 +184,24 @@ def _random_layer_command(rng: np.random.Generator, document: Document) -> Comma
             channel_commands.set_key(Channel(DEPTH, layer.id, handle), frame, rng.uniform(-1, 1)),
             channel_commands.delete_keys({Channel(DEPTH, layer.id, handle): {frame}}),
         ]
+    return commands[rng.integers(len(commands))]
+
+
+def _random_slider_command(rng: np.random.Generator, document: Document) -> Command:
+    name, other = (f"slider {number}" for number in rng.integers(3, size=2))
+    places = rng.permutation(4)[:2].tolist()
+    poses = tuple(SliderPose(at=complex(at), pose=None) for at in sorted(places))
+    slider = Slider(name=name, poses=poses, value=complex(rng.random()))
+    at, frame = complex(rng.integers(4)), int(rng.integers(50))
+    commands = [
+        slider_commands.add_slider(0, slider),
+        slider_commands.change_slider(0, other, slider),
+        slider_commands.set_slider_value(0, name, complex(rng.random())),
+        slider_commands.set_slider_pose(0, name, at, random_pose(rng, document)),
+        slider_commands.delete_slider(0, name),
+        channel_commands.set_key(Channel(SLIDER, 0, name), frame, complex(rng.random())),
+        channel_commands.delete_keys({Channel(SLIDER, 0, name): {frame}}),
+    ]
     return commands[rng.integers(len(commands))]
 
 
