@@ -3,7 +3,7 @@
 A frame lasts 1 / fps seconds. Sample n of the mix is at n / rate seconds from frame 0.
 """
 
-from collections import Counter
+from collections import Counter, OrderedDict
 from collections.abc import Iterable
 from typing import Final
 
@@ -14,6 +14,8 @@ from app.sound.decoder import SoundDecoder
 from app.sound.samples import Samples, resample
 
 USUAL_RATE: Final = 48_000
+CHUNK: Final = 8_192  # samples of a file that are decoded at once
+KEPT: Final = 64  # chunks: some ten seconds
 
 
 def common_rate(sounds: Iterable[Sound]) -> int:
@@ -23,20 +25,36 @@ def common_rate(sounds: Iterable[Sound]) -> int:
 
 
 class _SoundReader:
-    """Reads any part of a sound file; zeros are outside of it."""
+    """Reads any part of a sound file; zeros are outside of it.
+
+    Whole chunks are decoded and kept for a while: parts overlap where rates are converted, and
+    short loops come again. A jump back in an MP3 file is slow.
+    """
 
     def __init__(self, file: SoundFile, data: bytes) -> None:
         self._file = file
         self._decoder = SoundDecoder(data, file.name)
+        self._chunks: OrderedDict[int, Samples] = OrderedDict()
 
     def read(self, first: int, count: int) -> Samples:
         found = np.zeros((count, 2), dtype=np.float32)
         begin, end = max(first, 0), min(first + count, self._file.samples)
-        if begin < end:
-            self._decoder.seek(begin)
-            known = self._decoder.read(end - begin)
-            found[begin - first : begin - first + len(known)] = known
+        for index in range(begin // CHUNK, -(-end // CHUNK) if begin < end else 0):
+            chunk, start = self._chunk(index), index * CHUNK
+            low, high = max(begin, start), min(end, start + len(chunk))
+            if low < high:
+                found[low - first : high - first] = chunk[low - start : high - start]
         return found
+
+    def _chunk(self, index: int) -> Samples:
+        """Return the samples of a chunk, decoded now or lately."""
+        if index not in self._chunks:
+            self._decoder.seek(index * CHUNK)
+            self._chunks[index] = self._decoder.read(CHUNK)
+            if len(self._chunks) > KEPT:
+                self._chunks.popitem(last=False)
+        self._chunks.move_to_end(index)
+        return self._chunks[index]
 
 
 class SoundMix:

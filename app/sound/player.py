@@ -50,6 +50,7 @@ class SoundPlayer:
         self._delivered = 0  # samples of the stream
         self._request: _Request | None = None
         self._fading: Samples | None = None  # from the stream before
+        self._is_waiting = False  # whether the device waits for samples
 
     @property
     def rate(self) -> int:
@@ -94,7 +95,8 @@ class SoundPlayer:
     def elapsed(self) -> float | None:
         """Return the seconds of the stream that were heard; None if the device is lost."""
         now, request, rate = self._clock(), self._request, self.rate
-        if now - (self._since if request is None else request.at) > LOST:
+        since = self._since if request is None else request.at
+        if now - since > LOST and not self._is_waiting:
             return None
         if request is None:
             return 0.0
@@ -118,8 +120,9 @@ class SoundPlayer:
                     before, self._delivered = self._delivered, self._delivered + wanted
                     self._request = _Request(self._clock(), before, self._delivered)
                     found, fading = self._take(wanted), self._fading
-                    self._fading = None
+                    self._fading, self._is_waiting = None, False
                     break
+                self._is_waiting = True
             self._mix()
         if fading is not None:
             known = min(len(fading), wanted)

@@ -58,13 +58,15 @@ def _turn(
     mix: SoundMix, at: SamplePlaces, speed: float, first: float, period: float, *, is_first: bool
 ) -> Samples:
     """Return samples within a turn of a loop."""
-    found = _read(mix, at, speed)
     since = at - first if speed > 0 else first + period - at
     fading = int(np.count_nonzero(since < FADE * mix.rate * abs(speed)))
-    if fading and not is_first:
-        before = _read(mix, at[:fading] + (period if speed > 0 else -period), speed)
-        share = (since[:fading] / (FADE * mix.rate * abs(speed))).astype(np.float32)[:, None]
-        found[:fading] = share * found[:fading] + (1 - share) * before
+    if not fading or is_first:
+        return _read(mix, at, speed)
+    # Before the jump back, which may take long.
+    before = _read(mix, at[:fading] + (period if speed > 0 else -period), speed)
+    found = _read(mix, at, speed)
+    share = (since[:fading] / (FADE * mix.rate * abs(speed))).astype(np.float32)[:, None]
+    found[:fading] = share * found[:fading] + (1 - share) * before
     return found
 
 

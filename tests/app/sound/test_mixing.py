@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import disc_document
-from sound_files import clicks, noise, sine, sound, wav
+from sound_files import clicks, encoded, noise, sine, sound, wav
 
 from app.document import VOLUME, Channel, Document, channel_commands, scene_commands, sound_commands
 from app.sound import SoundMix, common_rate
+from app.sound.decoder import SoundDecoder
 
 RATE = 48_000
 
@@ -95,3 +96,20 @@ def test_scaled_time_moves_sounds_without_stretching_them():
     document = with_sounds(sound(wav(sine(0.5)), start=10.5))
     scaled = scene_commands.scale_time(2.0)(document).sounds[0]
     assert (scaled.start, scaled.length) == (21.0, 0.5)
+
+
+def test_reading_on_decodes_each_sample_once(monkeypatch):
+    decoded = []
+    read = SoundDecoder.read
+
+    def counted(self, count):
+        found = read(self, count)
+        decoded.append(len(found))
+        return found
+
+    # Blocks of another rate overlap.
+    mix = SoundMix(with_sounds(sound(encoded("mp3", noise(2.0, 44_100), 44_100), "a.mp3")), RATE)
+    monkeypatch.setattr(SoundDecoder, "read", counted)
+    for first in range(0, 2 * RATE, 1_024):
+        mix.read(first, 1_024)
+    assert sum(decoded) <= 2 * 44_100

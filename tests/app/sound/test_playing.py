@@ -143,3 +143,17 @@ def test_lost_device_is_given_up():
     hand.player.lose_device("it was unplugged")
     with pytest.raises(LissomError, match="unplugged"):
         hand.player.play(iter(()))
+
+
+def test_device_that_waits_for_slow_samples_is_not_lost():
+    hand = Hand()
+
+    def slow():
+        hand.now += 1.5 * LOST
+        assert hand.player.elapsed() == 0
+        yield np.ones((PERIOD, 2), dtype=np.float32)
+
+    with hand.player._mixing:  # the thread that mixes ahead stays out
+        hand.player.play(slow())
+        hand.player._feeder = None
+    hand.turn(0.05)
