@@ -115,7 +115,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ),
     )
     parser.add_argument(
-        "--bones", action="store_true", help=_("add a bone to each limb, to keep it stiff")
+        "--bones", action="store_true", help=_("add bones to each limb, which keep their length")
     )
     add_meshing_options(parser)
     add_cut_out_options(parser)

@@ -252,3 +252,25 @@ def test_a_key_with_a_side_alone_bends_the_limb_where_it_is():
         after, _ = posed(*keys, bones=[chain], handles=handles)
         assert bend_side(*(places(after)[name] for name in triple)) == -side
         assert abs(places(after)["hand"] - places(layer)["hand"]) < 1
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("bend", [50, 70, 90, 110, 130])
+@pytest.mark.parametrize("chain", [ARM, LEG])
+def test_limbs_fold_and_leave_the_rest_alone(chain, bend):
+    rest = [complex(*HANDLES[name]) for name in chain]
+    first, second = np.diff(rest)
+    side = -bend_side(*rest) if bend_side(*rest) else 1
+    turn = side * np.radians(bend) - np.angle(second / first)
+    goal = complex(rest[0] + first * np.exp(-0.5j * turn) + second * np.exp(0.5j * turn))
+    layer, notices = posed(
+        {"frame": 0}, {"frame": 9, "targets": {chain[2]: [goal.real, goal.imag]}}, bones=[chain]
+    )
+    assert notices == ()
+    thousandth = 0.4  # of the picture's size
+    end = layer.map_of(layer.keys[1].pose)(np.array([rest[2]]))[0]
+    assert abs(end - goal) < 1 * thousandth
+    assert np.abs(lengths(layer, chain)).max() < 0.02
+    # The sharpest folds press on the trunk.
+    assert head_error(layer) < (6 if bend <= 90 else 12) * thousandth
+    assert layer.is_proven(layer.keys[1].pose)
