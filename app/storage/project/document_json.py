@@ -44,7 +44,7 @@ from app.document import (
     require_motions,
     with_directed_bones,
 )
-from app.errors import EMPTY_IMPORT_LOG, EXPECTED_ERRORS, ImportLog, LissomError
+from app.errors import EMPTY_IMPORT_LOG, EXPECTED_ERRORS, ImportLog, LissomError, join_names
 from app.export_formats import FormatOptions, FormatSettings
 from app.rigging import Parameters
 from app.storage.json_values import JsonObject, as_list, as_object, as_whole
@@ -76,6 +76,10 @@ from engine.domain import Domain
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
 SCHEMA = 4
+EARLIER_BONES = N_(
+    "Bones of {layers} keep their length from now on. Keys stay as they are until they are posed "
+    "again, but frames between them may change."
+)
 NO_LAYERS: Mapping[int, Layer] = MappingProxyType({})
 SIZE = pair(WHOLE, WHOLE, N_("two whole numbers"))
 RANGE = pair(WHOLE, WHOLE, N_("two whole numbers"), make=FrameRange, of=astuple)
@@ -454,6 +458,10 @@ def read_document(
     if len({layer["id"] for layer in layers}) < len(layers):
         # Refused here: later each layer's members would be read twice.
         raise LissomError(_("two of its layers have the same id"))
+    earlier = [each["name"] for each in layers if any(map(_is_earlier_limb, each["bones"]))]
+    if earlier:
+        note = _(EARLIER_BONES).format(layers=join_names(earlier))
+        fields["import_log"] += ImportLog(notes=(note,))
     shared: dict[str, PictureFile] = {}
     read = tuple(_read_layer(layer, archive, shared) for layer in layers)
     if not archive.is_written:
@@ -506,6 +514,11 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
         }
     )
     return with_directed_bones(layer)
+
+
+def _is_earlier_limb(bone: Bone) -> bool:
+    """Whether a bone was only stiff when it was saved, and keeps its length from now on."""
+    return not bone.is_directed and bone.stiffness > 1
 
 
 def _widest_bounds(fields: Mapping[str, Any]) -> Bounds:

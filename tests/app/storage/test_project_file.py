@@ -46,7 +46,7 @@ from app.document.commands.keys import (
 from app.document.commands.layers import layer_commands
 from app.document.layer import DUPLICATE_BONES, NO_HANDLE
 from app.document.model import NO_LAYER, PARENT_CIRCLE
-from app.errors import LissomError
+from app.errors import LissomError, join_names
 from app.storage import NO_FOLDER
 from app.storage.assets import sample_images
 from app.storage.json_values import (
@@ -68,6 +68,7 @@ from app.storage.project.archive import (
     array_member,
 )
 from app.storage.project.channel_codecs import DUPLICATE_CHANNEL
+from app.storage.project.document_json import EARLIER_BONES
 from app.storage.project.earlier_schemas import update_schema
 from app.storage.project.members import OTHER_CHECKSUM
 from app.storage.project_file import NEWER_LISSOM, load_project, load_thumbnail, save_project
@@ -538,6 +539,24 @@ def test_material_that_makes_no_sense_is_named(tmp_path, way, value, message):
     broken = with_json(read_members(tmp_path / "a"), "layers", 0, *way, value=value)
     with pytest.raises(LissomError, match=message):
         load_project(pack(tmp_path / "a.lissom", broken))
+
+
+def test_bones_of_earlier_versions_get_a_direction_and_are_told_once(tmp_path):
+    save_project(tmp_path / "a", clocked_document())
+    members = read_members(tmp_path / "a")
+    content = json.loads(members["project.json"])
+    for bone in content["layers"][0]["bones"]:
+        del bone["is_directed"]
+        bone["stiffness"] = 10.0
+    earlier = {**members, "project.json": json.dumps(content).encode()}
+    opened = load_project(pack(tmp_path / "b", earlier))
+    layer = opened.layers[0]
+    assert all(bone.is_directed for bone in layer.bones)
+    assert opened.import_log.notes[-1] == EARLIER_BONES.format(layers=join_names([layer.name]))
+    save_project(tmp_path / "c", opened)
+    again = load_project(tmp_path / "c")
+    assert again.import_log == opened.import_log
+    assert again.layers[0].bones == layer.bones
 
 
 def test_two_bones_in_one_place_and_wild_stiffnesses_are_refused(tmp_path):
