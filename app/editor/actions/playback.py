@@ -14,8 +14,10 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0)
 
 @with_project
 def seek(session: Session, project: Project, frame: int) -> None:
-    """Put the playhead on a frame of the animation."""
+    """Put the playhead on a frame of the animation; a drag under the hand ends."""
     frame = project.document.frames.clamp(frame)
+    if frame != current_frame(session, project):
+        project.history.interrupt()
     project.timeline.seek(frame, session.clock())
 
 

@@ -183,3 +183,13 @@ def test_escape_stops_a_pose_where_it_is_for_a_command(window, loose, unfinished
     assert loose.drag is None
     assert loose.layer.key(BENT).pose is seen
     assert loose.document.fps == 60
+
+
+def test_drag_ends_where_the_playhead_leaves_its_frame(window, loose, hand):
+    dragged = loose.document
+    playback.scrub(window.session, 5)
+    window.frames(1)
+    hand.move(3)
+    hand.let_go()
+    window.settle()
+    assert loose.document is dragged
