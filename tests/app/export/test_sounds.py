@@ -9,10 +9,12 @@ import pytest
 from animations import moving_document
 from documents import altered
 from exports import draw, plan_for, run
+from full_disk import FullDisk
 from sound_files import clicks, lag, noise, sound, wav
 
 from app.cli.main import main
 from app.document import Document, ExportSettings
+from app.errors import LissomError
 from app.sound import Soundtrack
 from app.storage.project_file import save_project
 
@@ -158,3 +160,16 @@ def test_missing_file_is_named(tmp_path, capsys):
     assert main(["export", str(path), "--out", str(tmp_path / "a.mov"), "--frames", "0:2"]) == 0
     assert "the file talk.wav of the sound 'talk' is missing" in capsys.readouterr().err
     assert not heard(tmp_path / "a.mov")[0].any()
+
+
+@pytest.mark.parametrize("suffix", ["mp4", "webm", "mov"])
+@pytest.mark.parametrize("room", [0, 20_000, 120_000])
+def test_full_disk_leaves_no_file_and_one_sentence(tmp_path, monkeypatch, capfd, suffix, room):
+    document = spoken()
+    monkeypatch.setattr("app.storage.files.atomic.os.fdopen", FullDisk)
+    # ProRes is the largest by far; the others pack a second into fewer bytes.
+    FullDisk.room = room if suffix == "mov" else min(room, 20_000)
+    with pytest.raises(LissomError, match=r"No space left on device\. The file needs"):
+        exported(tmp_path / f"a.{suffix}", document, 0, 48)
+    assert list(tmp_path.iterdir()) == []
+    assert capfd.readouterr().err == ""

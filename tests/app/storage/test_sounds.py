@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import pytest
 from documents import differences, disc_document
+from full_disk import FullDisk
 from sound_files import sine, sound, wav
 
 from app.document import VOLUME, Cue, Mouths, SoundFile, sound_commands
+from app.errors import LissomError
 from app.storage.autosave import (
     UNKNOWN_SOURCE,
     Autosave,
@@ -95,3 +97,19 @@ def test_replacing_a_file_by_a_shorter_one_cuts_the_sound():
     talk, again = sound_commands.replace_sound_file("talk", shorter)(document).sounds
     assert (talk.file.name, talk.length) == ("other.wav", 0.2)
     assert again is document.sounds[1]
+
+
+def test_full_disk_keeps_the_autosave_of_before(tmp_path, monkeypatch):
+    own, document = Autosave(tmp_path), spoken()
+    own.write(replace(document, sounds=()), UNKNOWN_SOURCE)
+    (path,) = tmp_path.glob("*.lissom")
+    with monkeypatch.context() as full:
+        full.setattr("app.storage.files.atomic.os.fdopen", FullDisk)
+        FullDisk.room = len(TALK) - 1
+        with pytest.raises(LissomError, match="No space left on device"):
+            own.write(document, UNKNOWN_SOURCE)
+    assert not list(tmp_path.glob("*.sound"))
+    assert load_recoverable_file(path)[0].sounds == ()
+    own.write(document, UNKNOWN_SOURCE)
+    assert load_recoverable_file(path)[0].sounds[0].file.data == TALK
+    own.remove()
