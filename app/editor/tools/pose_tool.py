@@ -1,5 +1,7 @@
 """Tool that poses: a press on the shape adds a handle, and drags move handles.
 
+While Ctrl is held, a dragged end of a limb turns its last bone alone (forward kinematics).
+
 If the row of a handle's track is selected, the drag keys the track or is recorded.
 """
 
@@ -10,6 +12,7 @@ from typing import Self
 from app.document import Target
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.limb_editing import turn_last_bones
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag_forced
 from app.editor.actions.tracking.recording import (
     discard_recording,
@@ -165,13 +168,15 @@ class PoseTool(Tool):
         pulled = self.dragged & {handle.id for handle in self.project.layer.handles}
         if not (self.moved and pulled):
             return
-        way = self.offset
+        way, turns_bones = self.offset, session.tools.is_snapping
+        layer = self.project.layer
 
         def as_far(start: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
             wanted = {i: target.position for i, target in start.targets.items()}
             places = wanted if self.at_target else start.places
             known = pulled & targets.keys()
-            return {i: replace(targets[i], position=places[i] + way) for i in known}
+            moved = {i: replace(targets[i], position=places[i] + way) for i in known}
+            return turn_last_bones(layer, start, moved) if turns_bones else moved
 
         drag_handles(session, as_far, gesture=self, hand=BoundedPull(pulled))
 

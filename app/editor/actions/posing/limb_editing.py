@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from app.document import Target, find_limbs
+from app.document import Layer, Target, find_limbs
 from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.posing.pose_drag import drag_handles
 from app.editor.project import Project
@@ -38,6 +38,24 @@ def flip_selected_joints(session: Session, project: Project) -> None:
 
     if joints:
         drag_handles(session, flipped)
+
+
+def turn_last_bones(
+    layer: Layer, start: DragStart, moved: Mapping[int, Target]
+) -> Mapping[int, Target]:
+    """Return moved targets with ends of limbs on circles around the joints before them."""
+    limbs, turned = find_limbs(layer), dict(moved)
+    for limb in limbs.limbs if limbs is not None else ():
+        *before, joint, end = limb.chain.handles
+        if end not in moved or not before or not {joint, before[-1]}.isdisjoint(moved):
+            continue
+        centre, way = start.places[joint], moved[end].position - start.places[joint]
+        place = centre + way / (abs(way) or 1.0) * limb.lengths[-1]
+        turned[end] = replace(moved[end], position=place)
+        if len(before) == 1:
+            side = bend_side(start.places[before[0]], centre, place) or None
+            turned[joint] = replace(start.targets[joint], side=side or start.targets[joint].side)
+    return turned
 
 
 def _selected_joints(project: Project) -> dict[int, tuple[int, int, int]]:

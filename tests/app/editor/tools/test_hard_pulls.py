@@ -245,14 +245,35 @@ def test_a_hand_bends_its_arm_and_stays_within_reach(tmp_path):
     assert session.notices.toasts[-1].text.endswith("stopped where its bones reach.")
 
 
-def test_a_joint_bends_to_its_other_side_by_a_click(tmp_path):
+def arm_session(tmp_path):
     picture = drawn(([(20, 120), (100, 112), (180, 120)], 24))
     document = still_document(picture)
     for place in (24 + 40j, 100 + 48j, 176 + 40j):
         document = handle_commands.add_handle(0, place)(document)
     for ends in ((0, 1), (1, 2)):
         document = stiffness_commands.add_bone(0, ends, 10.0)(document)
-    session = session_of(document, tmp_path, picture)
+    return session_of(document, tmp_path, picture)
+
+
+def test_ctrl_turns_the_last_bone_alone(tmp_path):
+    session = arm_session(tmp_path)
+    project = session.project
+    hand = complex(where(project)[0][2])
+    tool_pointer.press_pointer(session, PointerHit(place=hand, handle=2))
+    for share in (0.25, 0.5, 0.75, 1.0):
+        tool_pointer.move_pointer_in_steps(session, hand + share * (-30 + 60j))
+        run_update_steps(session)
+    tool_pointer.release_pointer(session, hand - 30 + 60j)
+    settle(session)
+    targets = project.layer.key(0).pose.targets
+    assert abs(targets[1].position - 100 - 48j) < 1.5
+    assert abs(targets[2].position - targets[1].position) == pytest.approx(abs(76 - 8j), abs=1.5)
+    turned = np.angle(targets[2].position - targets[1].position)
+    assert turned == pytest.approx(np.angle(46 + 52j), abs=0.05)
+
+
+def test_a_joint_bends_to_its_other_side_by_a_click(tmp_path):
+    session = arm_session(tmp_path)
     project = session.project
     asked = drag(session, 2, -16 + 0j)
     tool_pointer.release_pointer(session, asked)
