@@ -39,7 +39,7 @@ class SoundPlayer:
     ) -> None:
         self._clock, self._open = clock, opened
         self._device: SoundDevice | None = None
-        self._is_running = False
+        self.is_running = False  # whether the device asks for samples
         self._feeder: threading.Thread | None = None
         self.failure: str | None = None  # why there is no device
         self._since = 0.0  # seconds of the clock at the last start or stop
@@ -76,8 +76,8 @@ class SoundPlayer:
         if self._feeder is None:
             self._feeder = threading.Thread(target=self._feed, name="sound", daemon=True)
             self._feeder.start()
-        if self._device is not None and not self._is_running:
-            self._is_running = True
+        if self._device is not None and not self.is_running:
+            self.is_running = True
             self._device.start(self.pull)
 
     def stop(self) -> None:
@@ -88,8 +88,8 @@ class SoundPlayer:
     def rest(self) -> None:
         """Stop a device that has had nothing to play for a while."""
         is_idle = self._stream is None and not self._ready
-        if self._device and self._is_running and is_idle and self._clock() > self._since + LINGER:
-            self._is_running = False
+        if self._device and self.is_running and is_idle and self._clock() > self._since + LINGER:
+            self.is_running = False
             self._device.stop()
 
     def elapsed(self) -> float | None:
@@ -107,7 +107,7 @@ class SoundPlayer:
         """Do without a device from now on."""
         self.stop()
         device, self._device, self.failure = self._device, None, reason
-        self._is_running = False
+        self.is_running = False
         if device is not None:
             # A device that does not answer must not stop the window.
             threading.Thread(target=device.stop, daemon=True).start()

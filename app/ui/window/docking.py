@@ -40,6 +40,8 @@ class Docking:
         # Size and scale of the window, and the frames after a change in which docks are fitted.
         self._around = (0.0, 0.0, 0.0)
         self._frames_to_fit = FITTING
+        # The project whose tabs are shown, with the revision of its document.
+        self._tabs_of: tuple[Project | None, int] = (None, -1)
 
     def layout(self, draw: Callable[[Panel], None]) -> hello_imgui.DockingParams:
         """Return the docks, and the windows in which `draw` draws the panels."""
@@ -52,8 +54,11 @@ class Docking:
     def begin_frame(self, scale: float, project: Project | None) -> None:
         """Show the tabs of a project. Fit sizes to the window and the interface scale."""
         layout = hello_imgui.get_runner_params().docking_params
-        for panel, tab in zip(self._panels, layout.dockable_windows, strict=True):
-            tab.is_visible = panel.has_tab(project)
+        source = (project, 0 if project is None else project.history.revision)
+        if source != self._tabs_of:
+            self._tabs_of = source
+            for panel, tab in zip(self._panels, layout.dockable_windows, strict=True):
+                tab.is_visible = panel.has_tab(project)
         room = imgui.get_io().display_size
         around = (room.x, room.y, scale)
         if around != self._around or imgui.is_any_mouse_down() or layout.layout_reset:

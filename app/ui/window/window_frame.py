@@ -218,7 +218,12 @@ class WindowFrame:
             session.export.show_frame_box(None)
         if project is not None and project.layer_list.pointed_layer is not None:
             project.layer_list.point_at(None)
-        sound_playback.play_heard_sounds(session)
+        if project is not None:
+            timing = project.timeline
+            in_use = (timing.playhead.since, timing.gesture, timing.heard)
+            # A window without sounds that rests makes as few calls as possible.
+            if session.player.is_running or in_use != (None, None, None):
+                sound_playback.play_heard_sounds(session)
         if project is not None and project.timeline.playhead.since is not None:
             playback.stop_playback_at_end(session)
             # Before the panels, which read the playhead's frame.
