@@ -59,10 +59,13 @@ class LayerStages:
 
         `carried` returns the layer's transform by its parents at a frame.
         """
-        clip, moment = self.clip(document), segment_time_at(self.clip(document), frame)
-        store, pose = self.store, keyed_pose_at(clip, moment)
+        clip, store = self.clip(document), self.store
+        moment = segment_time_at(clip, frame)
+        pose = keyed_pose_at(clip, moment)
         if not store.is_exact(clip, frame):
             store.add(store.segments_job(clip, [] if pose else [moment.segment])())
+        if self.corrected is not None and self.corrected.clip != clip:
+            self.corrected = CorrectedFrames(clip, self.corrected)
         if (
             store.sampler is not None
             and self.corrected is not None

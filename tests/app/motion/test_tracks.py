@@ -520,6 +520,16 @@ def test_extent_and_exports_are_of_the_shown_frames():
     assert_allclose(shown, places[3], rtol=0, atol=1e-2)
 
 
+def test_an_evaluator_evaluates_each_document_with_its_own_tracks():
+    evaluator = None
+    for offset in (14 - 6j, -9 + 4j, 14 - 6j):
+        document = pulled(offset)
+        evaluator = evaluator or Evaluator.exact(document)
+        found = evaluator.evaluate(document, 3.0).layers[0].scene_positions
+        own = Animation(clip_of(document, 0)).positions(3.0)
+        assert_allclose(found, own, rtol=0, atol=1e-9)
+
+
 def test_corrections_are_solved_anew_for_another_anchor_and_another_method():
     """At a key, where nothing but the pose says what the in-betweens are."""
     away = track("right", ((0, 14 - 6j), (2 * SHORT, 14 - 6j)), is_scene_space=False)
