@@ -68,6 +68,16 @@ class LayerFrame:
         )
         return self.mesh.derivatives(self.positions) if streamed is None else streamed
 
+    @property
+    def track_errors(self) -> dict[int, float]:
+        """Distances in pixels of handles from the targets of their tracks, by id.
+
+        A correction of an earlier clip may have handles that were deleted since.
+        """
+        found = {} if self.correction is None else self.correction.target_errors
+        own = {handle.id for handle in self.clip.layer.handles}
+        return {handle: miss for handle, miss in found.items() if handle in own}
+
     def pivot_frame_at(self, place: complex) -> PivotFrame:
         """Return position and rotation of a point in the layer's space, as exact as the mesh."""
         rest = self.mesh.domain.mesh.vertices

@@ -103,7 +103,7 @@ def describe_pose_limit(session: Session) -> str:
         missed = measure_target_errors(layer, shown.pose)
         lags |= missed.errors if missed.at_limits else {}
     if correction is not None and correction.is_limited:
-        own = correction.target_errors.items()
+        own = shown.track_errors.items()
         lags |= {handle: miss for handle, miss in own if misses_target(layer, miss)}
     if not lags:
         return ""

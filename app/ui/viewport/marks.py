@@ -109,7 +109,7 @@ def _find_off_track(shown: LayerFrame) -> dict[int, complex]:
     if found is None or shown.placeholder is not None:
         return {}
     return {
-        i: found.targets[i] for i, miss in found.target_errors.items() if misses_target(layer, miss)
+        i: found.targets[i] for i, miss in shown.track_errors.items() if misses_target(layer, miss)
     }
 
 

@@ -1026,7 +1026,11 @@ def test_no_damage_gets_through(tmp_path, count):
         except LissomError:
             refused += 1
         else:
-            assert not differences(document, full_document())
+            found = differences(document, full_document())
+            # A project opens without the bytes of a sound, which can be found again.
+            lost = [f"document.sounds.{i}.file.data" for i, _ in enumerate(document.sounds)]
+            assert set(found) <= set(lost)
+            assert all(document.sounds[lost.index(each)].file.data is None for each in found)
     assert refused > 2 * count / 3
 
 

@@ -14,6 +14,7 @@ from app.editor.actions import editing, playback
 from app.editor.actions.posing.pose_drag import set_targets
 from app.errors import LissomError
 from app.motion import InbetweenCache
+from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.reports.curves import TIMES, measure_curves
 from app.ui.bars.status import describe_pose_limit, list_status_items
 from engine.maps import distortion
@@ -104,6 +105,15 @@ def test_held_back_pull_appears_with_its_remedy(window, loose):
     editing.undo(window.session)
     assert loose.layer is layer, "looser limits and the pose within them are one step"
     assert loose.history.undo_label == steps
+
+
+def test_handle_of_an_earlier_correction_that_was_deleted_is_not_told(window, loose):
+    runtime, kept = loose.layer_runtime, loose.layer.handles[0].id
+    errors = {kept: 50.0, 99: 80.0}
+    earlier = SecondaryCorrection(target_errors=errors, limits=("k",))
+    runtime.shown = replace(runtime.shown, correction=earlier, is_approximate=True)
+    assert runtime.shown.track_errors == {kept: 50.0}
+    assert "50 px short" in describe_pose_limit(window.session)
 
 
 @pytest.mark.usefixtures("everything")
