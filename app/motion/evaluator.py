@@ -174,9 +174,11 @@ class Evaluator:
 
     def current_transforms(self, document: Document) -> ParentTransforms | None:
         """Return the transforms of a document; None without parents, or while they are unknown."""
-        known, key = self.transforms, parenting_key(document)
-        is_current = known is not None and bool(key) and parenting_key(known.document) == key
-        return known if is_current else None
+        known = self.transforms
+        if known is None or known.document is document:
+            return known
+        key = parenting_key(document)
+        return known if key and parenting_key(known.document) == key else None
 
     def placements(
         self, document: Document, layer: int, frames: Sequence[int]
@@ -209,10 +211,11 @@ class Evaluator:
         placed = {}
         for layer, each in shown.items():
             own = document.layer(layer)
-            ancestors = document.all_ancestors(layer)
             if not own.attachments:
                 placement = transform_at(document, own, each.frame)
-            elif transforms is None or any(parent.id in corrected for parent in ancestors):
+            elif transforms is None or any(
+                parent.id in corrected for parent in document.all_ancestors(layer)
+            ):
                 placement = compose_chain(
                     parent_links(document, layer, each.frame),
                     lambda layer, place: shown[layer.id].pivot_frame_at(place),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from app.document import Clip, Document, Pose, clip_of, keyed_pose_at, segment_time_at
-from app.motion.caches.corrected_frames import CorrectedFrames
+from app.motion.caches.corrected_frames import CorrectedFrames, reuse_corrections
 from app.motion.caches.inbetween_cache import InbetweenCache
 from app.motion.caches.segment_memory import MemoryBudget
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -64,8 +64,8 @@ class LayerStages:
         pose = keyed_pose_at(clip, moment)
         if not store.is_exact(clip, frame):
             store.add(store.segments_job(clip, [] if pose else [moment.segment])())
-        if self.corrected is not None and self.corrected.clip != clip:
-            self.corrected = CorrectedFrames(clip, self.corrected)
+        if self.corrected is not None:
+            self.corrected = reuse_corrections(document, self.layer_id, self.corrected)
         if (
             store.sampler is not None
             and self.corrected is not None

@@ -96,7 +96,8 @@ class SegmentMemory:
     def snapshot(self) -> "SegmentMemory":
         """Return a copy that a worker may read while this memory changes."""
         copied = copy(self)
-        copied._known = dict(self._known)  # noqa: SLF001 - its own
+        copied._known, copied._sizes = dict(self._known), dict(self._sizes)  # noqa: SLF001 - its own
+        copied.join(MemoryBudget())
         return copied
 
     def add(self, key: SegmentKey, newer: CachedSegment) -> None:

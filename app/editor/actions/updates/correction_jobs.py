@@ -1,10 +1,11 @@
 """Jobs for corrected frames: the shown frame first, then all others."""
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
-from app.document import Clip, clip_of
+from app.document import Clip
 from app.editor.actions import playback
-from app.editor.error_reports import report_failure
+from app.editor.actions.updates.measuring_jobs import make_job
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Job, JobKind
@@ -76,8 +77,7 @@ def _ground(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _corrected(project: Project) -> Iterator[tuple[Clip, LayerRuntime, CorrectedFrames]]:
-    for layer, runtime in project.runtimes.layers.items():
-        clip = clip_of(project.document, layer)
+    for clip, runtime in project.clips:
         if runtime.corrected is not None and not runtime.store.has_failed(clip, "correction"):
             yield clip, runtime, runtime.corrected
 
@@ -93,8 +93,5 @@ def _job(
             runtime.corrected.take(found, is_newest=kind == CORRECTING_SHOWN_FRAME)
             project.free_memory()
 
-    def failed(error: Exception) -> None:
-        runtime.store.mark_failed("correction", clip)
-        report_failure(session, kind.complaint, error)
-
-    return Job(kind=kind, work=work, done=done, failed=failed)
+    fail = partial(runtime.store.mark_failed, "correction", clip)
+    return make_job(session, kind, work, done, fail)
