@@ -43,6 +43,8 @@ def show_layers(window, count):
     layers = (replace(document.layers[0], id=each, name=f"layer {each}") for each in range(count))
     project = project_of(replace(document, layers=tuple(layers)), PICTURE, "idle")
     saving.set_project(window.session, project)
+    # The tab Export, which another test may have left in front, marks the frame of an export.
+    window.show_tab("Handle")
     window.settle()
     playback.stop_playback(window.session)
     window.frames(30)
