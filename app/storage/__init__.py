@@ -52,7 +52,6 @@ from app.storage.files.outputs import (
 )
 from app.storage.files.reading import read_file as read_file
 from app.storage.files.strict_json import NOT_FINITE as NOT_FINITE, strict_json as strict_json
-from app.storage.flattening import flatten_layers as flatten_layers
 from app.storage.json_values import (
     JsonObject as JsonObject,
     as_flag as as_flag,
@@ -64,24 +63,6 @@ from app.storage.json_values import (
     as_whole as as_whole,
     load_json as load_json,
     repr_for_error as repr_for_error,
-)
-from app.storage.layers import (
-    LAYERED as LAYERED,
-    is_layered as is_layered,
-    make_posable_layer as make_posable_layer,
-    make_still_layer as make_still_layer,
-    make_still_picture as make_still_picture,
-    open_layered as open_layered,
-    open_merged as open_merged,
-    open_pictures as open_pictures,
-    place_as_layer as place_as_layer,
-    read_layered as read_layered,
-)
-from app.storage.opening import (
-    CutOutResult as CutOutResult,
-    OpenedScene as OpenedScene,
-    cut_picture as cut_picture,
-    open_picture as open_picture,
 )
 from app.storage.pictures.layered import (
     ImportedLayer as ImportedLayer,
@@ -128,6 +109,25 @@ from app.storage.project_file import (
     load_project as load_project,
     project_digest as project_digest,
     save_project as save_project,
+)
+from app.storage.scenes.flattening import flatten_layers as flatten_layers
+from app.storage.scenes.layers import (
+    LAYERED as LAYERED,
+    is_layered as is_layered,
+    make_posable_layer as make_posable_layer,
+    make_still_layer as make_still_layer,
+    make_still_picture as make_still_picture,
+    open_layered as open_layered,
+    open_merged as open_merged,
+    open_pictures as open_pictures,
+    place_as_layer as place_as_layer,
+    read_layered as read_layered,
+)
+from app.storage.scenes.opening import (
+    CutOutResult as CutOutResult,
+    OpenedScene as OpenedScene,
+    cut_picture as cut_picture,
+    open_picture as open_picture,
 )
 from app.storage.thumbnail import (
     draw_thumbnail as draw_thumbnail,

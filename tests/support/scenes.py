@@ -45,7 +45,7 @@ from app.editor import Session
 from app.editor.project import Project
 from app.errors import LissomError
 from app.rigging import Parameters
-from app.storage.layers import make_still_layer
+from app.storage.scenes.layers import make_still_layer
 from engine.maps.certificate import Certificate
 
 LAST = 40  # frame

@@ -15,7 +15,7 @@ from app.document.commands.layers import layer_commands
 from app.document.history.undo_history import History
 from app.document.history.undo_step import PreviewPose, bytes_only_in
 from app.errors import LissomError
-from app.storage.layers import make_still_layer
+from app.storage.scenes.layers import make_still_layer
 
 seeds = st.lists(st.integers(0, 2**32 - 1), max_size=25)
 

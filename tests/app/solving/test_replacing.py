@@ -18,10 +18,10 @@ from app.solving.drag.rig import Rig
 from app.solving.replace_picture import start_picture_replacement
 from app.solving.resolve_keys import step_resolver
 from app.storage.assets import sample_images
-from app.storage.layers import make_posable_layer, make_still_picture
 from app.storage.pictures.layered import ImportedLayer
 from app.storage.pictures.picture import decode_picture
 from app.storage.project_file import load_project
+from app.storage.scenes.layers import make_posable_layer, make_still_picture
 
 MESHING = Meshing(triangles=1_000, detail="coarse")
 

@@ -11,7 +11,7 @@ from PIL import Image
 
 from app.document import LAYER_KINDS
 from app.document.layers.groups import BLENDS
-from app.storage.flattening import blend_pictures, flatten_layers
+from app.storage.scenes.flattening import blend_pictures, flatten_layers
 
 SIDE = 70  # more rows than are blended at a time
 

@@ -19,14 +19,14 @@ from app.document import (
 )
 from app.errors import EMPTY_IMPORT_LOG, LissomError, NoticeCollector, display_name, shortened
 from app.storage.files.reading import read_file
-from app.storage.flattening import flatten_layers
-from app.storage.opening import OpenedScene, build_scene
 from app.storage.pictures.layer_names import UniqueNames
 from app.storage.pictures.layered import ImportedLayer, LayeredPicture, encode_png
 from app.storage.pictures.openraster import read_krita, read_openraster
 from app.storage.pictures.parallel import require_memory, run_parallel
 from app.storage.pictures.photoshop import read_photoshop
 from app.storage.pictures.picture import Picture, decode_pictures
+from app.storage.scenes.flattening import flatten_layers
+from app.storage.scenes.opening import OpenedScene, build_scene
 from app.texts import N_, _, message_of
 from engine.arrays import Bytes
 from engine.domain import MeshedDomain, rectangle_domain
