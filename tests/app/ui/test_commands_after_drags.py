@@ -150,7 +150,8 @@ def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
     if name in FURTHER:
         window.until(lambda: ready.drag.preview is not None)
     call(window, name)
-    window.until(lambda: not ready.pending.changes and not ready.pending.deferred)
+    queue = window.program.shell.queue
+    window.until(lambda: not (ready.pending.changes or ready.pending.deferred or queue.waiting))
     assert session.project is ready, "it asks first"
     if isinstance(session.dialogs.current, Question):
         (_, save), _ = session.dialogs.current.answers
