@@ -109,8 +109,9 @@ def add_out(
     about: str = _("the file to write"),
     *,
     place: Callable[[str], Path | Output] = output_file,
+    is_required: bool = True,
 ) -> None:
-    parser.add_argument("--out", metavar=metavar, type=place, required=True, help=about)
+    parser.add_argument("--out", metavar=metavar, type=place, required=is_required, help=about)
 
 
 def add_meshing_options(parser: argparse.ArgumentParser) -> None:

@@ -118,6 +118,11 @@ from app.document.layers.attachments import (
     Attachment as Attachment,
     attachments_repeat as attachments_repeat,
 )
+from app.document.layers.drawing_files import (
+    DrawingFile as DrawingFile,
+    FileLayer as FileLayer,
+    LayerOrigin as LayerOrigin,
+)
 from app.document.layers.groups import (
     BLEND_SECTIONS as BLEND_SECTIONS,
     BLENDS as BLENDS,

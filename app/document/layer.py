@@ -29,6 +29,7 @@ from app.document.checks import (
 )
 from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, Target
 from app.document.layers.attachments import Attachment
+from app.document.layers.drawing_files import LayerOrigin
 from app.document.layers.groups import BLENDS, BlendMode
 from app.document.rig.applied_motion import AppliedMotion, UnreadMotion, require_motions
 from app.document.rig.chains import Bone, require_chains
@@ -132,6 +133,7 @@ class Layer:
     group: str = ""  # path of the innermost group around the layer; "" outside all groups
     # Keys of the parent, each valid from its frame on. An attached layer has an anchor.
     attachments: tuple[Attachment, ...] = ()
+    origin: LayerOrigin | None = None  # in a file that can be reloaded
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:

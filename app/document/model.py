@@ -21,6 +21,7 @@ from app.document.channels.values import Camera
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.layer import Layer
 from app.document.layers.attachments import Attachment, repeated_joints
+from app.document.layers.drawing_files import DrawingFile, FileLayer
 from app.document.layers.groups import Group, ancestor_paths
 from app.document.layers.switch_group import SwitchGroup
 from app.document.rig.mirror_names import PAIRS, SidePairs, require_pairs
@@ -69,6 +70,7 @@ class Document:
     sounds: tuple[Sound, ...] = ()
     # Notices of all imports of layered drawings.
     import_log: ImportLog = EMPTY_IMPORT_LOG
+    drawings: tuple[DrawingFile, ...] = ()  # files of which layers can be reloaded
     # Layers by id, switch groups by the ids of their layers, groups by path.
     _layers: Mapping[int, Layer] = field(init=False, repr=False)
     _switch_groups: Mapping[int, SwitchGroup] = field(init=False, repr=False)
@@ -110,6 +112,9 @@ class Document:
         require_distinct(
             (sound.name for sound in self.sounds),
             N_("Two sounds have the name {value!r}; rename one of them."),
+        )
+        require_distinct(
+            (drawing.id for drawing in self.drawings), N_("Two drawings have the id {value!r}.")
         )
 
     @property
@@ -153,6 +158,18 @@ class Document:
     def find_layer(self, identity: int) -> Layer | None:
         """Return the layer with this id, if any."""
         return self._layers.get(identity)
+
+    def drawing_of(self, layer: Layer) -> DrawingFile | None:
+        """Return the file that a layer was imported from, if it is known."""
+        origin = layer.origin
+        known = (each for each in self.drawings if origin and each.id == origin.drawing)
+        return next(known, None)
+
+    def file_layer_of(self, layer: Layer) -> FileLayer | None:
+        """Return a layer as it is in its file, if that is known."""
+        drawing, origin = self.drawing_of(layer), layer.origin
+        is_known = drawing is not None and origin is not None and origin.index < len(drawing.layers)
+        return drawing.layers[origin.index] if is_known else None  # type: ignore[union-attr]
 
     def switch_group(self, name: str) -> SwitchGroup:
         for choice in self.switch_groups:

@@ -27,7 +27,28 @@ from app.solving.pose_transfer import (
     PoseTransfer as PoseTransfer,
     SimilarityTransform as SimilarityTransform,
 )
-from app.solving.replace_picture import start_picture_replacement as start_picture_replacement
+from app.solving.reload.apply import (
+    Reloading as Reloading,
+    start_reload as start_reload,
+    step_reload as step_reload,
+)
+from app.solving.reload.plan import (
+    Change as Change,
+    LayerChange as LayerChange,
+    ReloadPlan as ReloadPlan,
+    find_drawing as find_drawing,
+    plan_reload as plan_reload,
+)
+from app.solving.reload.replace_picture import (
+    distance_notices as distance_notices,
+    find_new_corner as find_new_corner,
+    start_picture_replacement as start_picture_replacement,
+)
+from app.solving.reload.table import (
+    ReloadRow as ReloadRow,
+    reload_lines as reload_lines,
+    reload_rows as reload_rows,
+)
 from app.solving.resolve_keys import KeyResolver as KeyResolver, step_resolver as step_resolver
 from app.solving.script.pose_script import load_pose_script as load_pose_script
 from app.solving.script_solver import pose_document as pose_document

@@ -110,24 +110,27 @@ from app.storage.project_file import (
     project_digest as project_digest,
     save_project as save_project,
 )
-from app.storage.scenes.flattening import flatten_layers as flatten_layers
-from app.storage.scenes.layers import (
+from app.storage.scenes.drawings import (
     LAYERED as LAYERED,
     is_layered as is_layered,
+    open_layered as open_layered,
+    open_merged as open_merged,
+    open_picture as open_picture,
+    open_pictures as open_pictures,
+    read_drawing as read_drawing,
+    read_layered as read_layered,
+)
+from app.storage.scenes.flattening import flatten_layers as flatten_layers
+from app.storage.scenes.layers import (
     make_posable_layer as make_posable_layer,
     make_still_layer as make_still_layer,
     make_still_picture as make_still_picture,
-    open_layered as open_layered,
-    open_merged as open_merged,
-    open_pictures as open_pictures,
     place_as_layer as place_as_layer,
-    read_layered as read_layered,
 )
 from app.storage.scenes.opening import (
     CutOutResult as CutOutResult,
     OpenedScene as OpenedScene,
     cut_picture as cut_picture,
-    open_picture as open_picture,
 )
 from app.storage.thumbnail import (
     draw_thumbnail as draw_thumbnail,

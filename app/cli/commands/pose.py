@@ -4,6 +4,7 @@ import argparse
 
 from app.cli.console import StatusLine, print_line, print_notices
 from app.cli.options import add_cut_out_options, add_meshing_options, add_out, input_file
+from app.errors import LissomError
 from app.texts import _, ngettext
 
 EPILOG = _(
@@ -179,6 +180,13 @@ rest, unless they have an ease.
 "tangent_mode" is through, corner or stop. It is corner by default for opacity, otherwise through.
 A channel is set in one place: here, or by "movement", "opacity", "order", "visible" or "front".
 
+A drawing that was changed in its program is reloaded with --reload NEW PROJECT. Handles, keys and
+joints stay. Layers are found by the ids in the file, by group and name, by a name that is unique,
+or by equal pixels. A table lists what is redrawn, moved, new and gone. The upper left corner of the
+canvas stays, or the place of the unchanged layers. Opacity, blend, visibility, clipping, names,
+groups and order come from the file where they changed there and not in the project. Layers that are
+gone are hidden, and keep their keys.
+
 Sounds are files beside the script:
 
    "sounds": [{"file": "talk.wav", "at": 12, "from": 0.5, "to": 3, "volume": 0.8}]
@@ -193,16 +201,40 @@ examples:
   lissom pose giraffe.png nod.json --out nod.lissom
   lissom pose giraffe.png nod.json --out nod.lissom --triangles 20000 --detail fine
   lissom pose photo.jpg nod.json --out nod.lissom --mask mask.png
+  lissom pose --reload character.psd walk.lissom
 """
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("picture", metavar="DRAWING", type=input_file, help=_("the drawing"))
     parser.add_argument(
-        "script", metavar="SCRIPT.json", type=input_file, help=_("handles and keys")
+        "picture",
+        metavar="DRAWING",
+        type=input_file,
+        help=_("the drawing, or with --reload the project"),
     )
-    add_out(parser, "PROJECT.lissom")
+    parser.add_argument(
+        "script",
+        metavar="SCRIPT.json",
+        type=input_file,
+        nargs="?",
+        help=_("handles and keys"),
+    )
+    add_out(parser, "PROJECT.lissom", is_required=False)
+    parser.add_argument(
+        "--reload",
+        metavar="NEW",
+        type=input_file,
+        help=_(
+            "replace the drawing in a project by its changed file NEW, and keep handles, keys and "
+            "joints; --out is by default the project itself"
+        ),
+    )
+    parser.add_argument(
+        "--layer",
+        metavar="NAME",
+        help=_("with --reload, reload only the layer of this name"),
+    )
     parser.add_argument(
         "--one-picture",
         action="store_true",
@@ -213,7 +245,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Solve the keys of a script and write the project."""
+    """Solve the keys of a script and write the project, or reload a project's drawing."""
+    if arguments.reload is not None:
+        if arguments.script is not None:
+            raise LissomError(_("--reload takes a project alone; leave out the script"))
+        from app.cli.reload import reload_project
+
+        reload_project(arguments.picture, arguments.reload, arguments.out, arguments.layer)
+        return 0
+    for name, value in (("SCRIPT.json", arguments.script), ("--out", arguments.out)):
+        if value is None:
+            raise LissomError(_("{name} is missing").format(name=name))
+    if arguments.layer is not None:
+        raise LissomError(_("--layer needs --reload"))
     from app.cli.drawings import open_drawing, save_drawing
     from app.solving import load_pose_script, pose_document
     from app.storage import check_writable

@@ -19,8 +19,13 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.editor.work.layer_runtime import LayerRuntime
-from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError, NoticeCollector, display_name
-from app.solving import KeyResolver, start_picture_replacement
+from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError, NoticeCollector
+from app.solving import (
+    KeyResolver,
+    distance_notices,
+    find_new_corner,
+    start_picture_replacement,
+)
 from app.sound import SUFFIXES
 from app.storage import (
     LAYERED,
@@ -33,8 +38,8 @@ from app.storage import (
     make_still_layer,
     make_still_picture,
     place_as_layer,
+    read_drawing,
     read_file,
-    read_layered,
     require_memory,
 )
 from app.texts import _, message_of, ngettext
@@ -104,7 +109,7 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
     if identity not in project.runtimes.layers:
         return
     before, canvas = project.document.layer(identity), project.document.canvas
-    scene = project.document.layers
+    scene, shown = project.document.layers, project.runtimes.layers[identity].picture.rgba
 
     def work() -> tuple[KeyResolver, _LoadedLayer]:
         data = read_file(path)
@@ -115,7 +120,8 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
         else:
             imported = ImportedLayer(name=before.name, data=data, picture=picture)
             made = _shape(imported, identity, before.meshing)
-        return start_picture_replacement(before, made.layer, canvas), made
+        corner = find_new_corner(before, picture, canvas, shown)
+        return start_picture_replacement(before, made.layer, corner), made
 
     def done(begun: tuple[KeyResolver, _LoadedLayer]) -> None:
         resolver, made = begun
@@ -124,7 +130,7 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
         resolving.begin_solving_keys(session, resolver)
         if resolver.before in project.document.layers:
             set_active_layer(session, identity)
-            for notice in made.notices:
+            for notice in (*made.notices, *distance_notices(resolver)):
                 session.notices.show(as_sentence(notice))
 
     kind = JobKind(
@@ -144,7 +150,7 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
         document, summary, notices_by_layer = before, EMPTY_IMPORT_LOG, NoticeCollector()
         made: list[_LoadedLayer] = []
         for path in paths:
-            drawing = _with_free_groups(_drawing(path), document)
+            drawing = _with_free_groups(read_drawing(path), document)
             _require_room(document.layers, [imported.picture for imported in drawing.layers])
             document = group_commands.add_groups(drawing.groups)(document)
             summary += drawing.summary
@@ -201,18 +207,6 @@ def _with_free_groups(drawing: LayeredPicture, document: Document) -> LayeredPic
         layers=tuple(replace(imported, group=free(imported.group)) for imported in drawing.layers),
         groups=tuple(replace(group, name=free(group.name)) for group in drawing.groups),
     )
-
-
-def _drawing(path: Path) -> LayeredPicture:
-    """Read a layered drawing, or a picture as a drawing of a single layer."""
-    if is_layered(path):
-        return read_layered(path)
-    data = read_file(path)
-    picture = decode_picture(data, path.name)
-    imported = ImportedLayer(
-        name=display_name(path.stem).strip() or "layer", data=data, picture=picture
-    )
-    return LayeredPicture(size=picture.size, layers=(imported,))
 
 
 def ask_pictures_to_add(session: Session) -> None:

@@ -11,22 +11,20 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image
 
-from app.document import MAX_GROUP_DEPTH, BlendMode, Group, ancestor_paths
-from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError, NoticeCollector, display_name
-from app.storage.pictures.layer_names import UniqueNames, check_name_length
+from app.document import BlendMode, DrawingFile, FileLayer, Group, ancestor_paths
+from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError, NoticeCollector
+from app.storage.pictures.layer_names import GroupPaths, UniqueNames, check_name_length
 from app.storage.pictures.parallel import require_memory, run_parallel
 from app.storage.pictures.picture import Picture
 from app.texts import N_, _
 from engine.arrays import Bytes, readonly
 
 MOST_LAYERS = 1_000
-MOST_GROUPS = 10_000
 EMPTY = N_("left out, because it is empty")
 # Of a layer's pixels. If the box of the opaque pixels has fewer, the rest is cut off. Every decoded
 # pixel takes memory, also on the graphics card.
 CUT_OFF = 0.8
 BACKGROUND = 0.95  # of the canvas: an opaque layer that covers as much is a background
-GROUPS_DEEP = N_("its groups are nested more than {most} deep; move some groups out")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -49,6 +47,10 @@ class ImportedLayer:
         Whether the layer is clipped by the content below it in its group.
     group : str
         Path of its group; "" outside groups.
+    own_name : str
+        Its name in the file, which may occur several times.
+    number : int
+        Its id in the file; 0 without one.
     """
 
     name: str
@@ -60,6 +62,21 @@ class ImportedLayer:
     blend: BlendMode = "normal"
     clipped: bool = False
     group: str = ""
+    own_name: str = ""
+    number: int = 0
+
+    @property
+    def file_layer(self) -> FileLayer:
+        """The layer as it is in its file, without its picture."""
+        return FileLayer(
+            name=self.own_name or self.name,
+            group=self.group,
+            number=self.number,
+            opacity=self.opacity,
+            blend=self.blend,
+            clipped=self.clipped,
+            hidden=not self.visible,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -77,6 +94,10 @@ class LayeredPicture:
     merge : callable
         Decodes the merged picture that the file contains beside its layers; None if it is missing
         or damaged.
+    file_name, sha256 : str
+        Of the file; "" until it is known.
+    is_merged : bool
+        Whether the layers of the file were merged into one picture.
     """
 
     size: tuple[int, int]
@@ -84,49 +105,27 @@ class LayeredPicture:
     summary: ImportLog = EMPTY_IMPORT_LOG
     groups: tuple[Group, ...] = ()
     merge: Callable[[], Picture | None] = lambda: None
+    file_name: str = ""
+    sha256: str = ""
+    is_merged: bool = False
+
+    def drawing_file(self, identity: int, corner: complex = 0j) -> DrawingFile:
+        """Return the file as a value of a document, with its corner on the document's canvas."""
+        return DrawingFile(
+            id=identity,
+            name=self.file_name,
+            sha256=self.sha256,
+            size=self.size,
+            corner=corner,
+            layers=tuple(layer.file_layer for layer in self.layers),
+            groups=self.groups,
+            is_merged=self.is_merged,
+        )
 
     @property
     def is_opaque(self) -> bool:
         """Whether every layer is opaque, as in a flat drawing."""
         return all(layer.picture.is_opaque for layer in self.layers)
-
-
-class GroupPaths:
-    """The groups of an imported drawing, each with a unique path."""
-
-    def __init__(self) -> None:
-        self._names = UniqueNames()
-        self._found: dict[str, Group] = {}
-
-    def add(self, around: str, group: Group) -> str:
-        """Add a group inside the group with the path `around`; return its path.
-
-        Raises `LissomError` if the nesting is too deep, there are too many groups, or the name is
-        too long.
-        """
-        if around.count("/") + bool(around) >= MAX_GROUP_DEPTH:
-            raise LissomError(_(GROUPS_DEEP).format(most=MAX_GROUP_DEPTH))
-        if len(self._found) == MOST_GROUPS:
-            raise LissomError(
-                _(
-                    "it has too many groups; Lissom reads at most {most:,}. Merge some of them"
-                ).format(most=MOST_GROUPS)
-            )
-        # A slash separates groups.
-        name = display_name(group.name).replace("/", "-").strip() or "group"
-        check_name_length(name)
-        path = self._names.claim(f"{around}/{name}" if around else name)
-        self._found[path] = replace(group, name=path)
-        return path
-
-    def is_clipped(self, path: str) -> bool:
-        """Return whether a group is clipped by the content below it."""
-        return self._found[path].clipped
-
-    def groups_of(self, layers: Sequence[ImportedLayer]) -> tuple[Group, ...]:
-        """Return the groups that contain these layers."""
-        filled = {path for layer in layers for path in ancestor_paths(layer.group)}
-        return tuple(group for path, group in self._found.items() if path in filled)
 
 
 def build_layered_picture(
@@ -164,12 +163,12 @@ def build_layered_picture(
         check_name_length(layer.name)
         is_repeated = layer.group and own[layer.name] > 1
         name = f"{layer.group}/{layer.name}" if is_repeated else layer.name
-        layers.append(replace(layer, name=names.claim(name)))
+        layers.append(replace(layer, name=names.claim(name), own_name=layer.name))
     return LayeredPicture(
         size=size,
         layers=tuple(layers),
         summary=collector.import_log,
-        groups=groups.groups_of(layers),
+        groups=groups.groups_around(layer.group for layer in layers),
         merge=merge,
     )
 

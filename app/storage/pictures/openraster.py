@@ -15,9 +15,9 @@ from xml.etree import ElementTree as ET
 from app.document import BLENDS, BlendMode, Group, ancestor_paths
 from app.errors import LissomError, NoticeCollector, shortened
 from app.storage.files.reading import DAMAGED_ZIP, open_zip
+from app.storage.pictures.layer_names import GroupPaths
 from app.storage.pictures.layered import (
     EMPTY,
-    GroupPaths,
     ImportedLayer,
     LayeredPicture,
     build_layered_picture,

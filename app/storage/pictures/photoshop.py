@@ -16,8 +16,8 @@ from PIL import Image
 
 from app.document import BLENDS, BlendMode, Group
 from app.errors import LissomError, NoticeCollector, install_hint, shortened
+from app.storage.pictures.layer_names import GroupPaths
 from app.storage.pictures.layered import (
-    GroupPaths,
     ImportedLayer,
     LayeredPicture,
     build_layered_picture,
@@ -159,6 +159,7 @@ def _read(drawing: Any) -> LayeredPicture:
             blend="normal" if layer.is_group() else _blend(layer, collector),
             clipped=is_clipped,
             group=place.group,
+            number=max(layer.layer_id, 0),
         )
         layers.append(read)
     is_blank = all(layer.picture.is_blank for layer in layers)

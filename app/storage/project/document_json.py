@@ -20,12 +20,15 @@ from app.document import (
     Bone,
     Cycle,
     Document,
+    DrawingFile,
     ExportSettings,
+    FileLayer,
     FrameRange,
     Group,
     Handle,
     Keyframe,
     Layer,
+    LayerOrigin,
     LibraryPose,
     Marker,
     Meshing,
@@ -348,6 +351,29 @@ GROUP = record(
     Field("blend", TEXT, default="pass-through"),
     Field("clipped", FLAG, default=False),
 )
+ORIGIN = nested_record(LayerOrigin, Field("drawing", WHOLE), Field("index", WHOLE))
+FILE_LAYER = nested_record(
+    FileLayer,
+    Field("name", TEXT),
+    Field("group", TEXT, default=""),
+    Field("number", WHOLE, default=0),
+    Field("opacity", NUMBER, default=1.0),
+    Field("blend", TEXT, default="normal"),
+    Field("clipped", FLAG, default=False),
+    Field("hidden", FLAG, default=False),
+    Field("is_missing", FLAG, default=False),
+)
+DRAWING = record(
+    DrawingFile,
+    Field("id", WHOLE),
+    Field("name", TEXT),
+    Field("sha256", TEXT),
+    Field("size", SIZE),
+    Field("corner", POINT, default=0j),
+    Field("layers", list_of(FILE_LAYER)),
+    Field("groups", list_of(GROUP), default=()),
+    Field("is_merged", FLAG, default=False),
+)
 LAYER = record(
     dict,
     Field("id", WHOLE),
@@ -398,6 +424,7 @@ LAYER = record(
         "attachment", optional(ATTACHMENT), lambda each: (*each.attachments, None)[0], default=None
     ),
     Field("handovers", list_of(ATTACHMENT), lambda each: each.attachments[1:], default=()),
+    Field("origin", optional(ORIGIN), default=None),
 )
 IMPORT_LOG = nested_record(
     ImportLog,
@@ -427,6 +454,7 @@ DOCUMENT = record(
     Field("groups", list_of(GROUP), default=()),
     Field("camera", list_of(key_codec(CAMERA)), default=()),
     Field("sounds", list_of(SOUND), default=()),
+    Field("drawings", list_of(DRAWING), default=()),
     Field("import_log", IMPORT_LOG, default=EMPTY_IMPORT_LOG, legacy_name="told"),
 )
 

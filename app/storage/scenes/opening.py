@@ -1,16 +1,14 @@
-"""New documents from picture files, and mesh textures from pictures."""
+"""New documents from single pictures, and mesh textures from pictures."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from pathlib import Path
 from typing import NamedTuple, Self
 
 from app.cut_out import CutOut, Mask, build_picture_domain, subject_mask, texture
-from app.document import Document, Meshing, PictureFile, new_layer
-from app.errors import display_name
-from app.storage.files.reading import read_file
-from app.storage.pictures.picture import Picture, decode_picture
+from app.document import Document, LayerOrigin, Meshing, PictureFile, new_layer
+from app.storage.pictures.layered import LayeredPicture
+from app.storage.pictures.picture import Picture
 from app.texts import message_of
 from engine.arrays import Booleans, Bytes, freeze
 from engine.domain import HoleMap, find_holes
@@ -71,26 +69,27 @@ class CutOutResult:
         return self.find_holes()
 
 
-def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
-    """Read a picture, find its outline, and return a document that shows it as drawn.
+def build_scene(drawing: LayeredPicture, meshing: Meshing, cut_out: CutOut) -> OpenedScene:
+    """Return the scene of a drawing of a single layer.
 
-    Raises `LissomError` or `EngineError` if the file is no picture, or has no subject with an
-    outline.
+    Raises `EngineError` if the picture has no subject with an outline.
     """
-    return build_scene(read_file(path), path, meshing, cut_out)
-
-
-def build_scene(data: bytes, path: Path, meshing: Meshing, cut_out: CutOut) -> OpenedScene:
-    """Return the scene of one picture from the bytes of its file."""
-    picture = decode_picture(data, str(path))
+    (imported,) = drawing.layers
+    picture = imported.picture
     domain, remedies = build_picture_domain(
         picture.rgba, triangles=meshing.triangles, detail=meshing.detail, cut_out=cut_out
     )
-    file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
-    layer = new_layer(file, domain, meshing, cut_out)
-    named = replace(layer, name=display_name(path.stem).strip() or layer.name)
+    file = PictureFile(data=imported.data, suffix=picture.suffix, size=picture.size)
+    layer = replace(
+        new_layer(file, domain, meshing, cut_out),
+        name=imported.name,
+        origin=LayerOrigin(drawing=0, index=0),
+    )
     notices = (*picture.notices, *map(message_of, remedies))
-    return OpenedScene(Document(layers=(named,)), {named.id: picture}, notices)
+    document = Document(
+        layers=(layer,), drawings=(drawing.drawing_file(0),), import_log=drawing.summary
+    )
+    return OpenedScene(document, {layer.id: picture}, notices)
 
 
 def cut_picture(picture: Picture, cut_out: CutOut, *, is_alone: bool = True) -> CutOutResult:

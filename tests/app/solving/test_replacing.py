@@ -15,7 +15,7 @@ from app.document.model import Document
 from app.document.settings import Meshing
 from app.solving.drag.drag_solver import DragSolver
 from app.solving.drag.rig import Rig
-from app.solving.replace_picture import start_picture_replacement
+from app.solving.reload.replace_picture import find_new_corner, start_picture_replacement
 from app.solving.resolve_keys import step_resolver
 from app.storage.assets import sample_images
 from app.storage.pictures.layered import ImportedLayer
@@ -51,7 +51,10 @@ def raised():
 
 def replaced(document, made):
     (before,) = document.layers
-    resolver = start_picture_replacement(before, made, document.canvas)
+    old = decode_picture(before.picture.data, "old")
+    new = decode_picture(made.picture.data, "new")
+    corner = find_new_corner(before, new, document.canvas, old.rgba)
+    resolver = start_picture_replacement(before, made, corner)
     while not resolver.is_over:
         resolver = step_resolver(resolver, np.zeros((1, 1, 4), np.uint8))
     assert resolver.progress == 1
@@ -150,7 +153,8 @@ def test_a_pose_that_cannot_be_carried_over_is_reached_from_rest():
     head = next(layer for layer in document.layers if layer.name == "head")
     image = Image.new("RGBA", (460, 460))
     ImageDraw.Draw(image).ellipse((10, 10, 450, 450), fill=(250, 210, 170, 255))
-    resolver = start_picture_replacement(head, layer_of(image), document.canvas)
+    corner = 1060 + 1100j - 230 * (1 + 1j)
+    resolver = start_picture_replacement(head, layer_of(image), corner)
     while not resolver.is_over:
         resolver = step_resolver(resolver, np.zeros((1, 1, 4), np.uint8))
     assert not resolver.unsolved

@@ -21,7 +21,7 @@ from app.errors import LissomError
 from app.solving import pose_document
 from app.solving.drag.drag_solver import DragSolver
 from app.solving.drag.rig import Rig
-from app.solving.replace_picture import start_picture_replacement
+from app.solving.reload.replace_picture import start_picture_replacement
 from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.solving.script.pose_script import parse_pose_script
 from app.storage.json_values import LACKS_FIELD, NOT_LIST, NOT_NUMBER, NOT_OBJECT, NOT_POINT

@@ -15,15 +15,15 @@ from app.document.settings import Meshing
 from app.errors import LissomError
 from app.storage.pictures.openraster import MERGED_ALONE, NO_KRITA, NOT_MERGED
 from app.storage.project_file import load_project, save_project
-from app.storage.scenes.flattening import LARGEST_FLAT
-from app.storage.scenes.layers import (
+from app.storage.scenes.drawings import (
     NO_SHAPE,
-    make_still_layer,
     open_layered,
     open_merged,
+    open_picture,
     open_pictures,
 )
-from app.storage.scenes.opening import open_picture
+from app.storage.scenes.flattening import LARGEST_FLAT
+from app.storage.scenes.layers import make_still_layer
 from engine.domain import require_domain
 
 MESHING = Meshing(triangles=9_000)

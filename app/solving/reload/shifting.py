@@ -1,0 +1,64 @@
+"""Layers that move on the canvas as a whole: artwork, handles and poses by the same vector."""
+
+from dataclasses import replace
+
+from app.document import Document, Layer, Pose
+from engine.maps import HarmonicMap
+
+
+def shift_layer(layer: Layer, by: complex) -> Layer:
+    """Return a layer that is moved on the canvas, with its motion unchanged.
+
+    Joints of child layers on it belong to the children, and stay.
+    """
+    if not by:
+        return layer
+    domain = layer.domain.moved(by)
+
+    def moved(pose: Pose) -> Pose:
+        # f'(z + by) = f(z) + by: the same coefficients over the moved cage, then a translation.
+        f = HarmonicMap(
+            cage=domain.cage, phi=pose.phi, psi=pose.psi, holes=domain.holes, logs=pose.logs
+        )
+        targets = {
+            identity: replace(target, position=target.position + by)
+            for identity, target in pose.targets.items()
+        }
+        return replace(pose.with_map(f.moved(1, by)), targets=targets)
+
+    tracks = tuple(
+        replace(track, keys=tuple(replace(key, place=key.place + by) for key in track.keys))
+        if track.is_scene_space
+        else track
+        for track in layer.tracks
+    )
+    return layer.with_poses(
+        map(moved, layer.poses),
+        corner=layer.corner + by,
+        domain=domain,
+        handles=tuple(replace(each, position=each.position + by) for each in layer.handles),
+        anchor=None if layer.anchor is None else layer.anchor + by,
+        mirror=None if layer.mirror is None else layer.mirror + by.real,
+        tracks=tracks,
+    )
+
+
+def shift_scene(document: Document, by: complex) -> Document:
+    """Return a document whose layers, joints and camera are moved on the canvas."""
+    if not by:
+        return document
+    layers = tuple(
+        replace(
+            shift_layer(layer, by),
+            attachments=tuple(
+                replace(joint, parent_point=joint.parent_point + by) for joint in layer.attachments
+            ),
+        )
+        for layer in document.layers
+    )
+    camera = tuple(
+        replace(key, value=replace(key.value, centre=key.value.centre + by))
+        for key in document.camera
+    )
+    drawings = tuple(replace(drawing, corner=drawing.corner + by) for drawing in document.drawings)
+    return replace(document, layers=layers, camera=camera, drawings=drawings)
