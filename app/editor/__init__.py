@@ -19,6 +19,7 @@ from app.editor.parts.dialogs import (
     Question as Question,
     RecoverableFile as RecoverableFile,
     RecoveryDialog as RecoveryDialog,
+    ReloadDialog as ReloadDialog,
     ShortcutSheet as ShortcutSheet,
 )
 from app.editor.parts.export_state import ExportRun as ExportRun

@@ -48,6 +48,7 @@ from app.solving.reload.table import (
     ReloadRow as ReloadRow,
     reload_lines as reload_lines,
     reload_rows as reload_rows,
+    scene_changes as scene_changes,
 )
 from app.solving.resolve_keys import KeyResolver as KeyResolver, step_resolver as step_resolver
 from app.solving.script.pose_script import load_pose_script as load_pose_script

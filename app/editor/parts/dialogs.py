@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from app.document import Document
 from app.editor.action import Action
 from app.editor.work.revised import Revised
+from app.solving import ReloadPlan
 from app.storage import SourceInfo
 from app.texts import _
 
@@ -82,7 +84,16 @@ class ProblemReport:
     behind: RecoveryDialog | None = None  # the dialog that is shown next
 
 
-Dialog = FileDialog | Question | ShortcutSheet | RecoveryDialog | ProblemReport
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ReloadDialog:
+    """The changes of a drawing's file, to be reloaded or not."""
+
+    path: Path
+    plan: ReloadPlan
+    document: Document  # that was compared with the file
+
+
+Dialog = FileDialog | ReloadDialog | Question | ShortcutSheet | RecoveryDialog | ProblemReport
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

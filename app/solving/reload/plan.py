@@ -180,7 +180,9 @@ def plan_reload(
         (layer, index, matches.get(index))
         for index, layers in shown.items()
         for layer in layers
-        if only is None or layer.id in only
+        if (only is None or layer.id in only)
+        # A layer that was missing before, and still is, has not changed.
+        and not (drawing.layers[index].is_missing and index not in matches)
     ]
     comparison = _Comparison(drawing, changed, pictures, scene_shift, corner)
     changes = run_parallel(

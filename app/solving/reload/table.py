@@ -33,6 +33,11 @@ def reload_lines(plan: ReloadPlan) -> Iterator[str]:
     for row in rows:
         line = f"{row.label:<{widths[0]}}  {row.name:<{widths[1]}}  {row.details}"
         yield line.rstrip()
+    yield from scene_changes(plan)
+
+
+def scene_changes(plan: ReloadPlan) -> Iterator[str]:
+    """Yield the changes of groups and of the canvas."""
     for path, present in plan.groups.renamed.items():
         yield _("the group {path} is now {present}").format(path=path, present=present)
     by = plan.scene_shift

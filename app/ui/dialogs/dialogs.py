@@ -12,6 +12,7 @@ from app.editor import (
     ProblemReport,
     Question,
     RecoveryDialog,
+    ReloadDialog,
     Session,
     ShortcutSheet,
     do,
@@ -29,6 +30,7 @@ from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
 from app.ui.dialogs.problem import draw_problem_dialog
 from app.ui.dialogs.recovery import draw_recovery_dialog
+from app.ui.dialogs.reload import draw_reload_dialog
 from app.ui.shortcuts.keys import shown_keys
 from app.ui.shortcuts.pointer_help import POINTER_HELP
 from app.ui.shortcuts.table import MENUS
@@ -53,7 +55,7 @@ class Dialogs:
     def draw(self, session: Session, look: Look, thumbnail: LookUp) -> list[Action]:
         self._follow_session(session)
         dialog = session.dialogs.current
-        _use_keyboard(is_used=isinstance(dialog, (Question, RecoveryDialog)))
+        _use_keyboard(is_used=isinstance(dialog, (Question, RecoveryDialog, ReloadDialog)))
         if dialog is None:
             return []
         title = _title(dialog)
@@ -102,13 +104,21 @@ class Dialogs:
                 return [*_waiting(look), *self._native.poll(session.clock())]
             case FileDialog():
                 return self._browser.draw(dialog, session, look, thumbnail)
-            case RecoveryDialog():
-                return draw_recovery_dialog(dialog, look)
-            case ProblemReport():
-                return draw_problem_dialog(dialog, look)
-            case ShortcutSheet():
-                _shortcuts(look)
-                return []
+        return _other_contents(dialog, look)
+
+
+def _other_contents(dialog: Dialog, look: Look) -> list[Action]:
+    """Draw a dialog that is neither a question nor a file dialog."""
+    match dialog:
+        case ReloadDialog():
+            return draw_reload_dialog(dialog, look)
+        case RecoveryDialog():
+            return draw_recovery_dialog(dialog, look)
+        case ProblemReport():
+            return draw_problem_dialog(dialog, look)
+        case _:
+            _shortcuts(look)
+            return []
 
 
 def _title(dialog: Dialog) -> str:
@@ -117,6 +127,8 @@ def _title(dialog: Dialog) -> str:
             return _("Unsaved work")
         case ProblemReport():
             return _("Report a problem")
+        case ReloadDialog():
+            return _("Reload {name}").format(name=display_name(dialog.path.name))
         case ShortcutSheet():
             return _("Keys and mouse")
     return dialog.title

@@ -8,7 +8,7 @@ from app.editor.actions.posing.motion_presets import apply_motion, joint_placeme
 from app.editor.actions.project_files import export_settings, exporting, files, recovery, saving
 from app.editor.actions.timing import channel_keys, cycles, keys, sounds, timeline_drag, tracks
 from app.editor.actions.tracking import recording
-from app.editor.layering import layer_list
+from app.editor.layering import layer_list, reloading
 from app.editor.poses import copying, library, pasting, pasting_targets
 from app.editor.tools import move_tool
 from app.texts import N_
@@ -18,6 +18,7 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
     N_("File"): (
         (files.ask_file_to_open,),
         (saving.save, saving.save_as),
+        (reloading.reload_drawing,),
         (window_actions.show_export, export_settings.repeat_export, exporting.copy_picture),
         (recovery.show_recovery,),
         (saving.close_project, saving.request_quit),

@@ -21,6 +21,7 @@ from app.editor.actions.posing.pose_solver import stop_finishing_pose
 from app.editor.actions.project_files import autosaving, saving
 from app.editor.actions.timing import sound_playback
 from app.editor.actions.updates import frame_update
+from app.editor.layering import reloading
 from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
@@ -228,6 +229,7 @@ class WindowFrame:
             playback.stop_playback_at_end(session)
             # Before the panels, which read the playhead's frame.
             self._follow.run_guarded(session)
+        reloading.watch_drawings(session)
         self._pace.begin_frame(session)
 
     def _draw_over_panels(self) -> None:

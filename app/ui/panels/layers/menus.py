@@ -28,6 +28,7 @@ from app.editor.layering.layer_list import (
 from app.editor.layering.layer_selection import select_layers, solo_layers
 from app.editor.layering.parenting import delete_layers
 from app.editor.layering.pictures import ask_replacement_picture, make_posable, make_still
+from app.editor.layering.reloading import reload_layers
 from app.editor.layering.switches import create_switch, key_switch
 from app.texts import _, ngettext
 from app.ui.shortcuts.keys import shown_keys
@@ -63,16 +64,11 @@ def explain_unswitchable_groups(groups: Sequence[str]) -> str:
 
 
 def _of_layer(project: Project, layer: Layer) -> list[Action]:
-    actions: list[Action] = []
     identity, chosen = layer.id, project.selected_layers
     is_many = len(chosen) > 1 and identity in chosen
     whom = chosen if is_many else (identity,)
     count = len(whom)
-    if not is_many:
-        if menu_entry(_("Duplicate"), icons.ICON_FA_CLONE):
-            actions.append(do(duplicate_layer, identity))
-        if menu_entry(_("Replace picture…"), icons.ICON_FA_FILE_IMAGE):
-            actions.append(do(ask_replacement_picture, identity))
+    actions: list[Action] = [] if is_many else _of_one_layer(identity)
     imgui.separator()
     text = (
         ngettext("Show", "Show {count} layers", count)
@@ -118,6 +114,15 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     if menu_entry(text, icons.ICON_FA_TRASH, reason=reason):
         actions.append(do(delete_layers, *whom))
     return actions
+
+
+def _of_one_layer(identity: int) -> list[Action]:
+    entries = (
+        (_("Duplicate"), icons.ICON_FA_CLONE, do(duplicate_layer, identity)),
+        (_("Replace picture…"), icons.ICON_FA_FILE_IMAGE, do(ask_replacement_picture, identity)),
+        (_("Reload layer"), icons.ICON_FA_ARROWS_ROTATE, do(reload_layers, identity)),
+    )
+    return [action for title, icon, action in entries if menu_entry(title, icon)]
 
 
 def _switch_disabled_reason(project: Project, layers: Sequence[int]) -> str | None:
