@@ -2,7 +2,7 @@ from layered import blob, openraster
 
 from app.document.settings import Meshing
 from app.solving.resolve_keys import KeyResolver, step_resolver
-from app.storage.scenes.layers import open_layered
+from app.storage.scenes.drawings import open_layered
 
 
 def test_a_layer_that_is_built_anew_stays_where_it_is(tmp_path):

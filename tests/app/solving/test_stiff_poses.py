@@ -225,7 +225,7 @@ def test_another_picture_takes_over_what_is_stiff():
     larger = np.zeros((80, 500, 4), np.uint8)
     larger[16:64, 20:480] = 255
     made = still_document(larger).layers[0]
-    resolver = start_picture_replacement(document.layers[0], made, (480, 80))
+    resolver = start_picture_replacement(document.layers[0], made, -10 + 0j)
     while not resolver.is_over:
         resolver = step_resolver(resolver, larger)
     after = resolver.command(document).layers[0]
