@@ -219,9 +219,7 @@ def _pictures(project: Project) -> dict[int, Picture]:
 
 @with_project
 def watch_drawings(session: Session, project: Project) -> None:
-    """Offer to reload drawings whose files have changed; looks every few seconds."""
-    if not project.file.is_look_due(session.clock(), LOOK):
-        return
+    """Offer to reload drawings whose files have changed; called every few seconds."""
     for drawing in project.document.drawings:
         path = find_file(session, project, drawing)
         if path is None:

@@ -1,7 +1,6 @@
 """The file of a project: its path, lock and autosave."""
 
 from dataclasses import dataclass, field
-from math import inf
 from pathlib import Path
 
 from app.document import Document, PreviewPose
@@ -21,7 +20,6 @@ class ProjectFile(Revised):
     # Source files of the pictures; they are never overwritten.
     drawings: set[Path] = field(default_factory=set)
     times: dict[Path, int] = field(default_factory=dict)  # when they were changed, as last seen
-    looked_at: float = -inf  # seconds of the clock when these times were last read
     lock: FileLock | None = None  # lock against other windows
     # Digest of the file when it was last opened or saved here; None for a new project.
     digest: str | None = None
@@ -50,13 +48,6 @@ class ProjectFile(Revised):
     def note_time(self, path: Path, time: int) -> None:
         """Note when a source file was changed, in nanoseconds."""
         self.times = {**self.times, path: time}
-
-    def is_look_due(self, now: float, seconds: float) -> bool:
-        """Return whether the last look at the times of files is so long ago, and note a look."""
-        is_due = now - self.looked_at >= seconds
-        if is_due:
-            self.looked_at = now
-        return is_due
 
     def is_locked_for(self, path: Path) -> bool:
         """Return whether this project locks a file."""

@@ -15,6 +15,7 @@ class FramePace:
     """Keeps the window awake while anything changes. Finds frames that can wait."""
 
     def __init__(self) -> None:
+        self.now = 0.0  # seconds of the clock when the frame began
         self._awake_until = 0.0
         self._idle_frames = 0
 
@@ -24,9 +25,10 @@ class FramePace:
         return self._idle_frames >= REPEATS
 
     def begin_frame(self, session: Session) -> None:
+        self.now = session.clock()
         if _is_busy(session):
-            self._awake_until = session.clock() + AWAKE
-        if session.clock() < self._awake_until:
+            self._awake_until = self.now + AWAKE
+        if self.now < self._awake_until:
             hello_imgui.request_refresh()
 
     def end_frame(self, session: Session) -> None:
