@@ -50,7 +50,7 @@ from app.storage.files.outputs import (
     check_writable as check_writable,
     make_folder as make_folder,
 )
-from app.storage.files.reading import read_file as read_file
+from app.storage.files.reading import file_time as file_time, read_file as read_file
 from app.storage.files.strict_json import NOT_FINITE as NOT_FINITE, strict_json as strict_json
 from app.storage.json_values import (
     JsonObject as JsonObject,

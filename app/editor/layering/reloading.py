@@ -28,14 +28,13 @@ from app.solving import (
     start_reload,
     step_reload,
 )
-from app.storage import LAYERED, Picture, read_drawing, read_file
+from app.storage import LAYERED, Picture, file_time, read_drawing, read_file
 from app.texts import _
 
 READING = JobKind(_("Comparing the drawing"), _("The drawing was not reloaded"))
 RELOADING = JobKind(_("Reloading the drawing"), _("The drawing was not reloaded"))
 LOOKING = JobKind(_("Looking at the drawing's file"), _("The file was not read"), "keep")
 CHANGED = _("The project changed meanwhile, so the drawing was not reloaded. Start again.")
-LOOK = 2.0  # seconds between two looks at the times of files
 
 
 @named_action(
@@ -95,7 +94,6 @@ def _compare(session: Session, project: Project, path: Path, *only: int) -> None
 
     def done(plan: ReloadPlan) -> None:
         project.file.add_drawings(path)
-        project.file.note_time(path, _time_of(path))
         if plan.is_empty:
             session.notices.show(_("{name} has not changed.").format(name=path.name))
         else:
@@ -202,15 +200,7 @@ def find_file(session: Session, project: Project, drawing: DrawingFile) -> Path 
         *(folder / drawing.name for folder in folders),
         *session.settings.preferences.recent,
     ]
-    return next((path for path in likely if path.name == drawing.name and _time_of(path)), None)
-
-
-def _time_of(path: Path) -> int:
-    """Return when a file was changed, in nanoseconds; 0 without a file."""
-    try:
-        return path.stat().st_mtime_ns
-    except OSError:
-        return 0
+    return next((path for path in likely if path.name == drawing.name and file_time(path)), None)
 
 
 def _pictures(project: Project) -> dict[int, Picture]:
@@ -224,7 +214,7 @@ def watch_drawings(session: Session, project: Project) -> None:
         path = find_file(session, project, drawing)
         if path is None:
             continue
-        time = _time_of(path)
+        time = file_time(path)
         if time != project.file.times.get(path):
             project.file.note_time(path, time)
             _look(session, project, drawing, path)

@@ -6,7 +6,7 @@ from pathlib import Path
 from app.document import Document, PreviewPose
 from app.editor.work.revised import Revised
 from app.errors import display_name
-from app.storage import FileLock, SourceInfo
+from app.storage import FileLock, SourceInfo, file_time
 
 Kept = tuple[Document, PreviewPose | None]  # the document and the unkeyed pose
 
@@ -41,9 +41,13 @@ class ProjectFile(Revised):
         """Files that no export may overwrite."""
         return (*self.drawings, *([] if self.path is None else [self.path]))
 
+    def __post_init__(self) -> None:
+        self.add_drawings(*self.drawings)
+
     def add_drawings(self, *paths: Path) -> None:
-        """Note source files of pictures that were added."""
-        self.drawings.update(paths)
+        """Note source files of pictures that were read."""
+        self.drawings = {*self.drawings, *paths}
+        self.times = {**self.times, **{path: file_time(path) for path in paths}}
 
     def note_time(self, path: Path, time: int) -> None:
         """Note when a source file was changed, in nanoseconds."""

@@ -84,6 +84,14 @@ def open_zip(file: IO[bytes]) -> Iterator[zipfile.ZipFile]:
         yield archive
 
 
+def file_time(path: Path) -> int:
+    """Return when a file was changed, in nanoseconds; 0 if there is no file."""
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:
+        return 0
+
+
 def tail_digest(file: IO[bytes]) -> str:
     """Return a digest of the size and the end of a zip file, which identifies its contents.
 

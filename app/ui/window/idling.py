@@ -8,6 +8,7 @@ from app.editor.actions.updates import stage_jobs
 # Input and running jobs wake the window at once.
 IDLE_FPS = 0.2
 AWAKE = 0.5  # seconds of full frame rate after that, for its consequences
+LOOK = 2.0  # seconds between two looks at the times of drawings' files
 REPEATS = 2  # frames after which further frames would show nothing new
 
 
@@ -15,7 +16,7 @@ class FramePace:
     """Keeps the window awake while anything changes. Finds frames that can wait."""
 
     def __init__(self) -> None:
-        self.now = 0.0  # seconds of the clock when the frame began
+        self._next_look = 0.0
         self._awake_until = 0.0
         self._idle_frames = 0
 
@@ -24,12 +25,17 @@ class FramePace:
         """Whether further frames would repeat the shown one and slow down the worker."""
         return self._idle_frames >= REPEATS
 
-    def begin_frame(self, session: Session) -> None:
-        self.now = session.clock()
+    def begin_frame(self, session: Session) -> bool:
+        """Return whether it is time to look for changed files of drawings."""
+        now = session.clock()
         if _is_busy(session):
-            self._awake_until = self.now + AWAKE
-        if self.now < self._awake_until:
+            self._awake_until = now + AWAKE
+        if now < self._awake_until:
             hello_imgui.request_refresh()
+        is_due = now >= self._next_look
+        if is_due:
+            self._next_look = now + LOOK
+        return is_due
 
     def end_frame(self, session: Session) -> None:
         self._idle_frames = self._idle_frames + 1 if _awaits_in_between(session) else 0

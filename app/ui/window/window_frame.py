@@ -68,7 +68,6 @@ class WindowFrame:
         self._asked: list[Action] = []
         self.queue = ActionQueue(session, self._report_error)
         self._pace = FramePace()
-        self._next_look = 0.0  # seconds of the clock when changed drawings are looked for
         previews = welcome.Previews(thumbnail, moments)
         over = (
             # Hello ImGui draws the tabs themselves.
@@ -230,10 +229,7 @@ class WindowFrame:
             playback.stop_playback_at_end(session)
             # Before the panels, which read the playhead's frame.
             self._follow.run_guarded(session)
-        self._pace.begin_frame(session)
-        # A call only when it is due: a window that rests makes as few calls as possible.
-        if self._pace.now >= self._next_look:
-            self._next_look = self._pace.now + reloading.LOOK
+        if self._pace.begin_frame(session):
             reloading.watch_drawings(session)
 
     def _draw_over_panels(self) -> None:
