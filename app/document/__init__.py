@@ -240,6 +240,7 @@ from app.document.queries.material.boundary_stiffness import (
 from app.document.queries.material.limbs import (
     LimbChain as LimbChain,
     Limbs as Limbs,
+    PlacedLimbs as PlacedLimbs,
     find_limbs as find_limbs,
 )
 from app.document.queries.material.local_limits import limits_along as limits_along

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.document import Clip, Pose, keyed_pose_at, segment_time_at
+from app.document import Clip, PlacedLimbs, Pose, find_limbs, keyed_pose_at, segment_time_at
 from app.motion.caches.corrected_frames import CorrectedFrames
 from app.motion.caches.inbetween_cache import InbetweenCache
 from app.motion.caches.inbetween_jobs import SingleFrame
@@ -87,15 +87,30 @@ class LayerFrame:
         return PivotFrame(complex(found.positions_on(positions)[0]), complex(np.exp(1j * turn)))
 
     @property
+    def placed_limbs(self) -> PlacedLimbs | None:
+        """Where the bones of the layer carry their handles."""
+        limbs = find_limbs(self.clip.layer)
+        if limbs is None:
+            return None
+        return limbs.locate(self.mesh.locate_limbs(limbs).positions_on(self.positions))
+
+    @property
     def handle_positions(self) -> Complexes:
-        """Positions of the handles, (h,)."""
-        return self.handles.positions_on(self.positions)
+        """Positions of the handles, (h,). Joints and rigid ends are on their bones."""
+        found, placed = self.handles.positions_on(self.positions), self.placed_limbs
+        if placed is not None:
+            for number, handle in enumerate(self.clip.layer.handles):
+                found[number] = placed.places.get(handle.id, found[number])
+        return found
 
     @property
     def handle_rotations(self) -> list[float]:
-        """Rotations of the shape at the handles, in radians."""
+        """Rotations of the shape at the handles, in radians; of rigid ends, those of their part."""
         turns = self.handles.rotations(self.mesh.domain.mesh.vertices, self.positions)
-        return [float(turn) for turn in turns]
+        placed = self.placed_limbs
+        angles = {} if placed is None else placed.angles
+        handles = zip(self.clip.layer.handles, turns, strict=True)
+        return [angles.get(handle.id, float(turn)) for handle, turn in handles]
 
 
 def evaluate_layer(

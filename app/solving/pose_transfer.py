@@ -176,14 +176,14 @@ def solve_from_map(
     ways: tuple[StartingPoint, ...] = tuple(StartingPoint),
 ) -> Pose:
     """Return the pose for these targets, solved from a map with some starting points."""
-    posed, targets = rig.posed_at(begin, {}).follow(targets)
-    deformer, wanted = posed.deformer, posed.build_targets(targets, tuple(pins))
+    posed, followed = rig.posed_at(begin, {}).follow(targets)
+    deformer, wanted = posed.deformer, posed.build_targets(followed, tuple(pins))
     state, _ = deformer.settle(
         rig.start_at(begin), wanted, ways=ways, at_most=MOST_STEPS, throw=False
     )
     # Steps that lead into the limits are proven for wider ones.
     proven = certify(state.map, deformer.boundary, deformer.bounds)
-    return posed.make_pose(state.map, targets, proven)
+    return posed.make_pose(state.map, followed.targets, proven)
 
 
 def find_initial_map(

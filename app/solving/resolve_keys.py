@@ -141,8 +141,8 @@ def _solved(resolver: KeyResolver, rig: Rig, index: int) -> Pose:
             pins = tuple(transfer_target(pin, shape, before.anchor, into.anchor) for pin in pins)
     if not resolver.solves_all and certify(first, boundary, bounds).is_certified:
         return pose
-    posed, targets = rig.posed_at(first, pose.targets).follow(pose.targets)
-    wanted, deformer = posed.build_targets(targets, pins), posed.deformer
+    posed, followed = rig.posed_at(first, pose.targets).follow(pose.targets)
+    wanted, deformer = posed.build_targets(followed, pins), posed.deformer
     # A pose that is carried over to a new shape stays in its valley, which is faster, too.
     ways = tuple(StartingPoint) if into is None else (StartingPoint.HERE,)
     begun = rig.start_at(first)
@@ -154,7 +154,7 @@ def _solved(resolver: KeyResolver, rig: Rig, index: int) -> Pose:
         certificate = certify(state.map, boundary, bounds)
     if into is None and not certificate.is_certified:
         return replace(pose, certificate=certify(first, boundary, bounds))
-    return posed.make_pose(state.map, targets, certificate)
+    return posed.make_pose(state.map, followed.targets, certificate)
 
 
 def transfer_target(target: Target, shape: HarmonicMap, place: complex, to: complex) -> Target:

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from engine.arrays import Complexes
 
 
@@ -10,6 +12,14 @@ class RigidMotion(NamedTuple):
 
     factor: complex = 1.0 + 0j
     shift: complex = 0j
+
+    @classmethod
+    def fit(cls, places: Complexes, wanted: Complexes) -> "RigidMotion":
+        """Return the motion that brings places (n,) nearest to others, in least squares."""
+        centre, to = complex(places.mean()), complex(wanted.mean())
+        product = complex(np.vdot(places - centre, wanted - to))
+        factor = product / abs(product) if product else 1.0 + 0j
+        return cls(factor, to - factor * centre)
 
     def apply(self, places: Complexes) -> Complexes:
         if self == IDENTITY_MOTION:

@@ -105,8 +105,10 @@ Each chain names its handles from root to end. A key that names the end alone be
 notice says how far it is off. A key that names a joint turns the chain around its root. A key that
 names roots alone moves the body with them. A joint bends to the side to which it bends in the key
 before, at first as it is drawn. A key with "side": {"elbow": 1} bends it to the left of the way
-from root to end, and -1 to the right. "angle": {"foot": 0} sets the rotation of an end, in degrees
-from the drawing. Several chains may start at a handle, but only one bone may end there.
+from root to end, and -1 to the right. The foot, hand or head beyond an end is rigid.
+"angle": {"foot": 0} sets its rotation, in degrees from the drawing; later keys keep it. Without an
+angle it turns with its bone. An end that stays keeps its rotation, too. Several chains may start at
+a handle, but only one bone may end there.
 
 Parts of the drawing are stiffer or softer with
 

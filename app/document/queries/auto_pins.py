@@ -1,12 +1,13 @@
 """Auto-pins: handles with equal targets in two neighbouring keys stay there in between."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from app.baseline import Baseline
 from app.document.channels.easing import HOLD
-from app.document.keyframe import Pose
+from app.document.keyframe import Keyframe, Pose
 from app.document.layer import Layer
 from app.document.queries.clips import Clip
 from app.document.queries.key_segments import clip_segments
@@ -105,6 +106,7 @@ def _segments(
             layer.has_parent,
             stiffness_source(layer),
             tuple(bone.ends for bone in layer.bones if bone.is_limb),
+            _fixed_angles(layer, pose_segments(clip)[number].keys),
             tuple(_velocity_sources(clip, each) for each in around) if len(around) > 1 else (),
             (layer.widest_bounds.k, layer.widest_bounds.sigma_a, layer.widest_bounds.sigma_b),
         )
@@ -115,6 +117,16 @@ def _segments(
             )
         )
     return tuple(found)
+
+
+def _fixed_angles(layer: Layer, keys: Sequence[Keyframe]) -> tuple[frozenset[int], ...]:
+    """Return the handles of a layer with bones that have an angle, for each key."""
+    if not layer.bone_joints:
+        return ()
+    return tuple(
+        frozenset(i for i, target in key.pose.targets.items() if target.rotation is not None)
+        for key in keys
+    )
 
 
 def _velocity_sources(clip: Clip, number: int) -> tuple[object, ...]:

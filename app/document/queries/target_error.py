@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from app.document.keyframe import Pose
 from app.document.layer import Layer
+from app.document.queries.material.limbs import find_limbs
 from app.document.queries.material.local_limits import uses_local_limits
 from app.document.queries.memo import memoized_on
 from app.texts import N_, _
@@ -130,11 +131,17 @@ def _least_target_error(domain: MeshedDomain) -> float:
 def measure_target_errors(layer: Layer, pose: Pose) -> TargetErrors:
     """Return the handles of a layer that miss their targets, without sprung handles.
 
-    Joints of bones are left out: their targets are places of bones and not of the drawing.
+    Joints of bones are left out: their targets are places of bones and not of the drawing. Rigid
+    ends of limbs are where their rigid parts carry them.
     """
+    limbs, lags = find_limbs(layer), dict(layer.target_errors(pose))
+    if limbs is not None:
+        placed = limbs.locate(layer.map_of(pose)(limbs.points)).places
+        for identity in limbs.rigid_ends & lags.keys():
+            lags[identity] = abs(placed[identity] - pose.targets[identity].position)
     lags = {
         identity: lag
-        for identity, lag in layer.target_errors(pose).items()
+        for identity, lag in lags.items()
         if identity not in layer.sprung_handles | layer.bone_joints and misses_target(layer, lag)
     }
     # The proven range is that of the whole drawing, joints of bones included.

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Easing, Layer, Pose, Target
+from app.document import Clip, Easing, Layer, Pose, Target, find_limbs
 from app.editor.work.pending_change import PendingChange
 from app.solving import DragSolver
 from app.texts import _
@@ -31,12 +31,15 @@ class DragStart:
 
     @classmethod
     def of(cls, layer: Layer, pose: Pose) -> "DragStart":
-        f, identities = layer.map_of(pose), [handle.id for handle in layer.handles]
+        f, identities, limbs = layer.map_of(pose), [h.id for h in layer.handles], find_limbs(layer)
         at = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
         places = dict(zip(identities, f(at).tolist(), strict=True))
-        # Joints are places of bones, which the drawing there may miss by some pixels.
-        places |= {i: pose.targets[i].position for i in layer.bone_joints & pose.targets.keys()}
         turns = dict(zip(identities, np.angle(f.derivatives(at)[0]).tolist(), strict=True))
+        if limbs is not None:
+            # Joints are places of bones, which the drawing there may miss by some pixels.
+            placed = limbs.locate(f(limbs.points))
+            places |= placed.places
+            turns |= placed.angles
         return cls.at(places, turns, pose.targets)
 
     @classmethod

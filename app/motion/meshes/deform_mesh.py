@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache, partial
 import numpy as np
 import numpy.typing as npt
 
-from app.document import Layer, Pose
+from app.document import Layer, Limbs, Pose
 from app.motion.meshes.triangle_order import TriangleOrder
 from engine.arrays import Booleans, Complexes, Floats, Integers
 from engine.domain import MeshedDomain
@@ -124,6 +124,10 @@ class DeformMesh:
     def locate_handles(self, layer: Layer) -> MeshPoints:
         """Locate a layer's handles in the undeformed mesh."""
         return self._located(tuple(handle.position for handle in layer.handles))
+
+    def locate_limbs(self, limbs: Limbs) -> MeshPoints:
+        """Locate the points of a layer's limbs in the undeformed mesh."""
+        return self._located(tuple(limbs.points.tolist()))
 
     def derivatives(self, positions: Complexes) -> tuple[Complexes, Complexes]:
         """Return f_z and f_z̄ of the drawn triangles at the vertices, each (v,)."""

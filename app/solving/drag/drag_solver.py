@@ -71,23 +71,26 @@ class DragSolver:
         posed, followed = self.posed.follow(targets)
         wanted = posed.build_targets(followed, self.pins, hands)
         left = wanted.released(posed.deformer.positions(self.state)).positions
+        before = followed.targets
         pulled = {identity for hand in hands for identity in hand.handles}
         places = {
-            handle.id: replace(followed[handle.id], position=complex(place))
+            handle.id: replace(before[handle.id], position=complex(place))
             for handle, place in zip(posed.rig.handles, left, strict=False)
             if handle.id in pulled
         }
-        wanted = posed.build_targets({**followed, **places}, self.pins)
+        ends = posed.release_ends(before, self.state.map, pulled)
+        places |= {i: replace(before[i], position=place) for i, place in ends.items()}
+        wanted = posed.build_targets(followed._replace(targets={**before, **places}), self.pins)
         return replace(self, state=posed.deformer.release(self.state, wanted)), places
 
     def out_of_reach(self, targets: Mapping[int, Target]) -> Mapping[int, float]:
         """Return how far ends of limbs stay off their targets, in pixels, by the bones alone."""
-        followed = self.posed.follow(targets := {**self.posed.start, **targets})[1]
+        followed = self.posed.follow(targets := {**self.posed.start, **targets})[1].targets
         off = {i: abs(followed[i].position - targets[i].position) for i in self.posed.ends}
         return {i: error for i, error in off.items() if misses_target(self.rig.layer, error)}
 
     def make_pose(self, targets: Mapping[int, Target]) -> Pose:
         """Return the current state as a pose with these targets."""
         return self.posed.make_pose(
-            self.state.map, self.posed.follow(targets)[1], self.state.certificate
+            self.state.map, self.posed.follow(targets)[1].targets, self.state.certificate
         )

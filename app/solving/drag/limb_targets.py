@@ -1,5 +1,6 @@
 """Targets of limbs: joints follow the ends of their chains, and hips carry the body."""
 
+from cmath import phase
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -8,11 +9,19 @@ import numpy as np
 
 from app.document import Layer, LimbChain, Limbs, Target
 from app.rigging import bend_side, solve_chain
+from app.solving.drag.limbs import PosedLimbs
 from engine.arrays import Complexes
-from engine.geometry import diameter
+from engine.geometry import RigidMotion, diameter
 
 # Part of the shape's diameter: places that are off a rigid motion by less move as a whole.
 RIGID = 2e-3
+
+
+class LimbTargets(NamedTuple):
+    """Targets of handles, and the angles wanted of the rigid parts at ends of limbs, by handle."""
+
+    targets: Mapping[int, Target]
+    angles: Mapping[int, float]
 
 
 class BodyTargets(NamedTuple):
@@ -39,8 +48,9 @@ def carry_body(
         return BodyTargets(targets, is_rigid=not moved and bool(body))
     most = RIGID * diameter(layer.domain.outline)
     if roots.issuperset(moved) and not layer.has_parent:
-        motion = _RigidMotion.fit(_places(start, moved), _places(targets, moved))
-        if motion.misfit <= most:
+        ways = _places(start, moved), _places(targets, moved)
+        motion = RigidMotion.fit(*ways)
+        if _misfit(motion, *ways) <= most:
             carried = [i for i in body if i not in moved and not layer.is_locked(i)]
             places = motion.apply(_places(start, carried)).tolist()
             targets = {
@@ -50,32 +60,43 @@ def carry_body(
                     for identity, place in zip(carried, places, strict=True)
                 },
             }
-    whole = _RigidMotion.fit(_places(start, body), _places(targets, body))
-    return BodyTargets(targets, is_rigid=whole.misfit <= most)
+    ways = _places(start, body), _places(targets, body)
+    return BodyTargets(targets, is_rigid=_misfit(RigidMotion.fit(*ways), *ways) <= most)
 
 
 def solve_limbs(
     layer: Layer,
-    limbs: Limbs,
-    joints: Mapping[int, complex],
+    limbs: PosedLimbs,
     start: Mapping[int, Target],
     targets: Mapping[int, Target],
-) -> Mapping[int, Target]:
+) -> LimbTargets:
     """Return the targets with those of all chains where kinematics has them.
 
-    `joints` are the places of the chains' handles at the start. The joints of a dragged end follow
-    it. Bones beyond a dragged joint turn with it, and a locked end stays.
+    The joints of a dragged end follow it. Bones beyond a dragged joint turn with it, and a locked
+    end stays. The rigid part at an end has the angle of its target. Without one it turns with its
+    bone if it is dragged, and otherwise keeps its angle, as a foot on the ground does.
     """
-    solved = dict(targets)
-    for limb in limbs.limbs:
+    solved, angles, joints = dict(targets), dict[int, float](), limbs.start.places
+    for limb in limbs.limbs.limbs:
         handles = limb.chain.handles
         moved = {i for i in handles if _position(start.get(i)) != targets[i].position}
         place = solved[limb.chain.root].position
         chain = _Chain(limb, joints, start, targets, frozenset(moved), place)
-        found = chain.solved(is_end_locked=layer.is_locked(limb.chain.end))
+        is_end_locked = layer.is_locked(limb.chain.end)
+        found = chain.solved(is_end_locked=is_end_locked)
         for identity, (place, side) in found.items():
             solved[identity] = replace(solved[identity], position=place, side=side)
-    return solved
+        end, before = limb.chain.end, limb.chain.handles[-2]
+        if end in limbs.start.angles:
+            given, is_carried = targets[end].rotation, chain.carries_end and not is_end_locked
+            angle = limbs.start.angles[end] if given is None else given
+            if is_carried or (given is None and end in moved):
+                way = solved[end].position - solved[before].position
+                angle += phase(way / (joints[end] - joints[before]))
+            angles[end] = angle
+            if given is not None:
+                solved[end] = replace(solved[end], rotation=angle)
+    return LimbTargets(solved, angles)
 
 
 def straighten_flipping(
@@ -117,16 +138,20 @@ class _Chain:
     moved: frozenset[int]
     root: complex
 
+    @property
+    def carries_end(self) -> bool:
+        """Whether a dragged joint turns the bones beyond it."""
+        _root, *inner, end = self.limb.chain.handles
+        return end not in self.moved and not self.moved.isdisjoint(inner)
+
     def solved(self, *, is_end_locked: bool) -> dict[int, tuple[complex, int | None]]:
         """Return the place and the side of each handle after the root."""
         handles, lengths = self.limb.chain.handles, self.limb.lengths
         if len(lengths) > 2 and any(map(self._is_flipped, handles[1:-1])):
             return self._mirrored().solved(is_end_locked=is_end_locked)
-        pulled = [i for i, each in enumerate(handles[1:-1], 1) if each in self.moved]
-        if not pulled or handles[-1] in self.moved or is_end_locked:
-            last = len(lengths)
-        else:
-            last = pulled[-1]
+        last = len(lengths)
+        if self.carries_end and not is_end_locked:
+            last = max(i for i, each in enumerate(handles[1:-1], 1) if each in self.moved)
         side = self._side(last)
         places = solve_chain(
             self.root,
@@ -187,25 +212,9 @@ def _position(target: Target | None) -> complex | None:
     return None if target is None else target.position
 
 
-class _RigidMotion(NamedTuple):
-    """The rigid motion that brings places nearest to others, and the largest distance left."""
-
-    centre: complex
-    turn: complex
-    wanted: complex
-    misfit: float
-
-    @classmethod
-    def fit(cls, places: Complexes, wanted: Complexes) -> "_RigidMotion":
-        centre, to = complex(places.mean()), complex(wanted.mean())
-        product = complex(np.vdot(places - centre, wanted - to))
-        turn = product / abs(product) if product else 1.0
-        misfit = np.abs(wanted - to - turn * (places - centre)).max()
-        return cls(centre, turn, to, float(misfit))
-
-    def apply(self, places: Complexes) -> Complexes:
-        moved: Complexes = self.wanted + self.turn * (places - self.centre)
-        return moved
+def _misfit(motion: RigidMotion, places: Complexes, wanted: Complexes) -> float:
+    """Return the largest distance that a rigid motion leaves."""
+    return float(np.abs(motion.apply(places) - wanted).max())
 
 
 def _places(targets: Mapping[int, Target], identities: list[int]) -> Complexes:

@@ -5,12 +5,12 @@ together as long as the drag moves it only as a whole. Roots of chains are hinge
 end of the chain at which they start.
 """
 
-from collections.abc import Mapping
+import cmath
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from math import inf
 
-import numpy as np
-
-from app.document import Limbs
+from app.document import Limbs, PlacedLimbs
 from engine.deform import Aim, Armature, Hinge, Shaft
 from engine.maps import Boundary, HarmonicMap
 
@@ -21,17 +21,18 @@ JOINT_FORCE = 50.0
 # The same of dragged ends, which kinematics keeps within reach. An arm that has to bend inside a
 # broad trunk needs more than joints do.
 END_FORCE = 200.0
+# Weight of rigid ends. Around other ends the bone's stiffness makes their handles firmer.
+END_WEIGHT = 10.0
+# Largest force, per L, with which rigid ends are turned to their angles, at this lever over L.
+ANGLE_FORCE, ANGLE_LEVER = 50.0, 0.2
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PosedLimbs:
-    """The limbs as they are in the pose at which a drag starts.
-
-    `joints` are the places of the handles of all chains, by id.
-    """
+    """The limbs with their armature, and where they are in the pose at which a drag starts."""
 
     limbs: Limbs
-    joints: Mapping[int, complex]
+    start: PlacedLimbs
     armature: Armature
     has_body: bool
 
@@ -40,33 +41,46 @@ class PosedLimbs:
         cls, limbs: Limbs, boundary: Boundary, shape: HarmonicMap, *, has_body: bool
     ) -> "PosedLimbs":
         """Return the limbs in the pose of a map."""
-        joints = locate_joints(limbs, boundary, shape)
+        armature = limbs.armature_in(boundary)
+        start = _locate(limbs, armature, shape)
         has_body = has_body and len(limbs.body) > 1
-        armature = limbs.bones_in(boundary)
         if has_body:
             body, number = (
                 Shaft(limbs.body, shape(limbs.body), BODY_STIFFNESS),
-                len(limbs.bone_shafts),
+                len(limbs.shafts),
             )
             hinges = [
-                Hinge(number, limb.first_shaft, joints[limb.chain.root], limb.places[0])
+                Hinge(number, limb.first_shaft, start.places[limb.chain.root], limb.places[0])
                 for limb in limbs.limbs
                 if limb.parent is None
             ]
-            armature = Armature.place(
-                boundary, [*limbs.bone_shafts, body], [*limbs.bone_hinges, *hinges]
-            )
-        return cls(limbs=limbs, joints=joints, armature=armature, has_body=has_body)
+            armature = Armature.place(boundary, [*limbs.shafts, body], [*limbs.hinges, *hinges])
+        return cls(limbs=limbs, start=start, armature=armature, has_body=has_body)
 
-    def aims(self, joints: Mapping[int, complex]) -> list[Aim]:
-        """Return the aims of roots and joints at their places; ends are handles of their own."""
+    def locate(self, shape: HarmonicMap) -> PlacedLimbs:
+        """Return where a map carries the handles of all chains."""
+        return _locate(self.limbs, self.armature, shape)
+
+    def aims(
+        self,
+        joints: Mapping[int, complex],
+        angles: Mapping[int, float],
+        *,
+        pulled: Collection[int] = (),
+        free: Collection[int] = (),
+    ) -> list[Aim]:
+        """Return the aims of roots and joints at their places, and of rigid ends.
+
+        Other ends are handles of their own. Ends that are `pulled` have a bounded force, and `free`
+        ones have none.
+        """
         aims, held = [], {limb.chain.root for limb in self.limbs.limbs}
         for limb in self.limbs.limbs:
             root, *inner, end = limb.chain.handles
             if limb.parent is None:
-                body = len(self.limbs.bone_shafts)
+                body = len(self.limbs.shafts)
                 start = (
-                    (body, self.joints[root])
+                    (body, self.start.places[root])
                     if self.has_body
                     else (limb.first_shaft, limb.places[0])
                 )
@@ -74,30 +88,20 @@ class PosedLimbs:
             for number, joint in enumerate(inner):
                 place = limb.places[number + 1]
                 aims.append(Aim(limb.first_shaft + number, place, joints[joint], JOINT_FORCE))
-            if end in held:
+            if limb.end_shaft is not None and end not in free:
+                force = END_WEIGHT * END_FORCE if end in pulled else inf
+                place = limb.places[-1]
+                aims.append(Aim(limb.end_shaft, place, joints[end], force, END_WEIGHT))
+                lever = ANGLE_LEVER * self.armature.size
+                way = lever * cmath.exp(1j * angles[end])
+                aims.append(Aim(limb.end_shaft, lever, way, ANGLE_FORCE, is_way=True))
+            if end in held and limb.end_shaft is None:
                 aims.append(Aim(limb.first_shaft + len(inner), limb.places[-1], joints[end]))
         return aims
 
 
-def locate_joints(limbs: Limbs, boundary: Boundary, shape: HarmonicMap) -> dict[int, complex]:
-    """Return the places of the handles of all chains in a pose, by id.
-
-    A joint lies in the middle between the places to which its bones carry it.
-    """
-    armature = limbs.bones_in(boundary)
+def _locate(limbs: Limbs, armature: Armature, shape: HarmonicMap) -> PlacedLimbs:
+    """Return where a map carries limbs, with whose shafts the armature begins."""
     phi, psi = shape.columns
-    positions = armature.coordinates @ phi + (armature.coordinates @ psi).conj()
-    motions, found = armature.motions(positions), dict[int, list[complex]]()
-    for limb in limbs.limbs:
-        for number, ((start, end), ids) in enumerate(
-            zip(
-                limb.bones,
-                zip(limb.chain.handles, limb.chain.handles[1:], strict=False),
-                strict=True,
-            )
-        ):
-            shafts = np.full(2, limb.first_shaft + number)
-            carried = armature.carried(motions, shafts, np.array([start, end]))
-            for identity, place in zip(ids, carried.tolist(), strict=True):
-                found.setdefault(identity, []).append(place)
-    return {identity: complex(np.mean(places)) for identity, places in found.items()}
+    coordinates = armature.coordinates[: len(limbs.points)]
+    return limbs.locate(coordinates @ phi + (coordinates @ psi).conj())

@@ -17,9 +17,22 @@ from app.document import (
     stiffness_source,
     with_stiffness,
 )
-from app.solving.drag.limb_targets import carry_body, solve_limbs, straighten_flipping
-from app.solving.drag.limbs import END_FORCE, PosedLimbs, locate_joints
-from engine.deform import Armature, BoundedPull, Deformer, Handles, HandleTargets, State
+from app.solving.drag.limb_targets import (
+    LimbTargets,
+    carry_body,
+    solve_limbs,
+    straighten_flipping,
+)
+from app.solving.drag.limbs import END_FORCE, PosedLimbs
+from engine.deform import (
+    AIM_STIFFNESS,
+    Armature,
+    BoundedPull,
+    Deformer,
+    Handles,
+    HandleTargets,
+    State,
+)
 from engine.errors import EngineError
 from engine.maps import Boundary, Certificate, HarmonicMap
 
@@ -42,6 +55,7 @@ class Rig:
     handles: tuple[Handle, ...]
     deformer: Deformer
     limbs: Limbs | None = None
+    free: frozenset[int] = frozenset()  # ids of sprung handles that are not dragged
 
     @classmethod
     def of(
@@ -64,8 +78,9 @@ class Rig:
         if not is_same:
             boundary, earlier = with_stiffness(layer, boundary), None
         limbs = earlier.limbs if earlier is not None else find_limbs(layer)
-        # A joint is a place of bones, which do not hold the drawing there.
-        carried |= layer.bone_joints if limbs is not None else frozenset()
+        # Joints and rigid ends are places of bones, which do not hold the drawing there.
+        free = carried
+        carried |= layer.bone_joints | limbs.rigid_ends if limbs is not None else frozenset()
         held = tuple(handle for handle in layer.handles if handle.id not in carried)
         if earlier and earlier.handles == held and earlier.pins == pins:
             handles = earlier.deformer.handles
@@ -74,7 +89,7 @@ class Rig:
         # Stiff parts deform less in new poses, and joints of bones more.
         bounds = limits_along(layer, boundary)
         deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
-        return cls(layer=layer, handles=held, deformer=deformer, limbs=limbs)
+        return cls(layer=layer, handles=held, deformer=deformer, limbs=limbs, free=free)
 
     @property
     def pins(self) -> tuple[complex, ...]:
@@ -137,26 +152,26 @@ class PosedRig:
         handles = rig.place_handles(armature) if armature else rig.deformer.handles
         return replace(self, rig=rig, deformer=replace(self.deformer, handles=handles))
 
-    def follow(self, targets: Mapping[int, Target]) -> tuple["PosedRig", Mapping[int, Target]]:
+    def follow(self, targets: Mapping[int, Target]) -> tuple["PosedRig", LimbTargets]:
         """Return the targets with joints and the body where a drag carries them."""
         limbs, layer = self.rig.limbs, self.rig.layer
         if limbs is None:
-            return self, targets
+            return self, LimbTargets(targets, {})
         body = carry_body(layer, limbs, self.start, targets)
         posed = self.keeping_body(body.is_rigid)
-        joints = posed.limbs.joints if posed.limbs is not None else {}
-        return posed, solve_limbs(layer, limbs, joints, self.start, body.targets)
+        if posed.limbs is None:
+            return posed, LimbTargets(body.targets, {})
+        return posed, solve_limbs(layer, posed.limbs, self.start, body.targets)
 
-    def straighten(self, targets: Mapping[int, Target], shape: HarmonicMap) -> Mapping[int, Target]:
+    def straighten(self, followed: LimbTargets, shape: HarmonicMap) -> LimbTargets:
         """Return targets of `follow` for the next steps from a map: a limb flips when straight."""
-        limbs = self.rig.limbs
-        if limbs is None or self.limbs is None:
-            return targets
-        joints = self.limbs.joints
-        if straighten_flipping(limbs, joints, targets) == targets:
-            return targets
-        now = locate_joints(limbs, self.deformer.boundary, shape)
-        return straighten_flipping(limbs, now, targets)
+        limbs, targets = self.limbs, followed.targets
+        if limbs is None:
+            return followed
+        if straighten_flipping(limbs.limbs, limbs.start.places, targets) == targets:
+            return followed
+        now = limbs.locate(shape).places
+        return followed._replace(targets=straighten_flipping(limbs.limbs, now, targets))
 
     @property
     def ends(self) -> frozenset[int]:
@@ -165,16 +180,14 @@ class PosedRig:
         return frozenset(limb.chain.end for limb in limbs)
 
     def build_targets(
-        self,
-        targets: Mapping[int, Target],
-        pins: tuple[Target, ...],
-        hands: Sequence[BoundedPull] = (),
+        self, followed: LimbTargets, pins: tuple[Target, ...], hands: Sequence[BoundedPull] = ()
     ) -> HandleTargets:
         """Return targets of `follow` in the form of the deformer.
 
         Each of `hands` refers to handles by id. Handles that no longer exist or hold no pose are
         left out.
         """
+        targets, angles = followed
         index = {handle.id: i for i, handle in enumerate(self.rig.handles)}
         pulling = [
             BoundedPull(
@@ -187,13 +200,32 @@ class PosedRig:
         wanted = [*(targets[identity] for identity in index), *pins]
         aims = []
         if self.limbs is not None:
-            aims = self.limbs.aims({i: target.position for i, target in targets.items()})
+            places = {i: target.position for i, target in targets.items()}
+            dragged = {identity for hand in hands for identity in hand.handles}
+            aims = self.limbs.aims(places, angles, pulled=dragged, free=self.rig.free)
         return self.deformer.handles.targets(
             np.array([target.position for target in wanted], dtype=np.complex128),
             [np.nan if target.rotation is None else target.rotation for target in wanted],
             pulling,
             aims,
         )
+
+    def release_ends(
+        self, targets: Mapping[int, Target], shape: HarmonicMap, pulled: Collection[int]
+    ) -> dict[int, complex]:
+        """Return targets of rigid ends, dragged with a bounded force, after release.
+
+        Each target lies a little beyond the end, so that a pose at rest stays.
+        """
+        if self.limbs is None:
+            return {}
+        most = END_FORCE / (2 * AIM_STIFFNESS) * self.limbs.armature.size
+        now = self.limbs.locate(shape).places
+        left = {}
+        for identity in self.limbs.limbs.rigid_ends.intersection(pulled) - self.rig.free:
+            way = targets[identity].position - now[identity]
+            left[identity] = now[identity] + way * min(1.0, most / (abs(way) or most))
+        return left
 
     def make_pose(
         self, shape: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
@@ -207,9 +239,11 @@ class PosedRig:
         carried = [handle for handle in rig.layer.handles if handle.id not in held]
         places = shape(np.array([handle.position for handle in carried], dtype=np.complex128))
         found = {h.id: complex(place) for h, place in zip(carried, places, strict=True)}
-        if rig.limbs is not None:
-            joints = locate_joints(rig.limbs, rig.deformer.boundary, shape)
+        if self.limbs is not None:
+            joints = self.limbs.locate(shape).places
             found |= {identity: joints[identity] for identity in found.keys() & joints.keys()}
+            for identity in self.limbs.limbs.rigid_ends - rig.free:
+                del found[identity]
         here = {
             identity: replace(targets[identity], position=place, rotation=None)
             for identity, place in found.items()

@@ -25,17 +25,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, readonly
-from engine.deform.forces.bones import Aims, Hinge, Motions, Shaft
+from engine.deform.forces.bones import Aims, Hinge, Motions, Shaft, require_armature
 from engine.deform.model.position_hessian import STIFFNESS, position_gram_matrix
 from engine.deform.model.unknowns import by_unknowns
-from engine.errors import EngineError
 from engine.maps import Boundary
 
 # κ of hinges and of aims, times L².
 HINGE_STIFFNESS = 3e4
 AIM_STIFFNESS = STIFFNESS
-# A shaft of fewer points has no direction.
-FEWEST_POINTS = 2
 TINY = 1e-300
 
 
@@ -94,18 +91,8 @@ class Armature:
         EngineError
             If all points of a shaft coincide, or a hinge names a shaft that does not exist.
         """
+        require_armature(shafts, hinges)
         counts = np.array([len(shaft.points) for shaft in shafts])
-        for number, shaft in enumerate(shafts):
-            if len(shaft.points) < FEWEST_POINTS or not np.ptp(shaft.rest) != 0:
-                raise EngineError("Shaft {number} needs two different points.", number=number)
-        for hinge in hinges:
-            if not {hinge.first, hinge.second} <= set(range(len(shafts))):
-                raise EngineError(
-                    "A hinge joins shafts {first} and {second}, but there are only {count}.",
-                    first=hinge.first,
-                    second=hinge.second,
-                    count=len(shafts),
-                )
         points = np.concatenate([shaft.points for shaft in shafts]).astype(np.complex128)
         owners = np.repeat(np.arange(len(shafts), dtype=np.intp), counts)
         centres = np.array([shaft.rest.mean() for shaft in shafts], np.complex128)
@@ -152,10 +139,19 @@ class Armature:
         turns = correlations / np.maximum(np.abs(correlations), TINY)
         return Motions(offsets, means, correlations, turns)
 
-    def carried(self, motions: Motions, shafts: Indices, places: Complexes) -> Complexes:
-        """Return where the motions of shafts (a,) bring places (a,) in their rest."""
-        moved: Complexes = motions.means[shafts] + motions.turns[shafts] * (
-            places - self.centres[shafts]
+    def carried(
+        self,
+        motions: Motions,
+        shafts: Indices,
+        places: Complexes,
+        are_places: Floats | float = 1.0,
+    ) -> Complexes:
+        """Return where the motions of shafts (a,) bring places (a,) in their rest.
+
+        Ways, where `are_places` is 0, only turn.
+        """
+        moved: Complexes = are_places * motions.means[shafts] + motions.turns[shafts] * (
+            places - are_places * self.centres[shafts]
         )
         return moved
 
@@ -219,17 +215,14 @@ class Armature:
 
     def cut_aims(self, positions: Complexes, aims: Aims, most: float) -> tuple[Aims, bool]:
         """Return the aims with targets at most so far ahead, and whether any was farther."""
-        here = self.carried(self.motions(positions), aims.shafts, aims.places)
-        ahead = aims.targets - here
+        ahead = -self.aim_errors(positions, aims)
+        here = aims.targets - ahead
         cut = most / np.maximum(np.abs(ahead), most)
         return aims._replace(targets=here + cut * ahead), bool((cut < 1.0).any())
 
     def aim_errors(self, positions: Complexes, aims: Aims) -> Complexes:
         """Return how far the places of aims (a,) are from their targets."""
-        errors: Complexes = (
-            self.carried(self.motions(positions), aims.shafts, aims.places) - aims.targets
-        )
-        return errors
+        return self._aim_errors(self.motions(positions), aims)
 
     def _errors(self, motions: Motions, aims: Aims | None) -> tuple[Complexes, Floats, Floats]:
         """Return the errors of hinges and aims, their κ, and κ softened to their largest force."""
@@ -240,14 +233,17 @@ class Armature:
         errors, stiffness = first - second, self.hinge_stiffness
         if aims is None:
             return errors, stiffness, stiffness
-        own = self.carried(motions, aims.shafts, aims.places) - aims.targets
-        firm = np.full(len(own), AIM_STIFFNESS / self.size**2)
+        own = self._aim_errors(motions, aims)
+        firm = AIM_STIFFNESS * aims.weights / self.size**2
         most = aims.max_forces / self.size / np.maximum(2.0 * np.abs(own), TINY)
         return (
             np.concatenate([errors, own]),
             np.concatenate([stiffness, firm]),
             np.concatenate([stiffness, np.minimum(firm, most)]),
         )
+
+    def _aim_errors(self, motions: Motions, aims: Aims) -> Complexes:
+        return self.carried(motions, aims.shafts, aims.places, aims.are_places) - aims.targets
 
     def _functionals(self, motions: Motions, aims: Aims | None) -> Complexes:
         """Return the weights of changes of the points in the errors of hinges and aims.
@@ -261,19 +257,26 @@ class Armature:
         )
         between = first - second
         if aims is not None:
-            own = self._functionals_of(motions, aims.shafts, aims.places)
+            own = self._functionals_of(motions, aims.shafts, aims.places, aims.are_places)
             between = np.concatenate([between, own], axis=1)
         joined: Complexes = between.reshape(-1, len(self.points))
         return joined
 
-    def _functionals_of(self, motions: Motions, shafts: Indices, places: Complexes) -> Complexes:
+    def _functionals_of(
+        self,
+        motions: Motions,
+        shafts: Indices,
+        places: Complexes,
+        are_places: Floats | None = None,
+    ) -> Complexes:
         """Return the weights (2, a, t) of changes in the real and imaginary parts of dR(z)."""
-        arms = 1j * motions.turns[shafts] * (places - self.centres[shafts])
+        held = np.ones(len(shafts)) if are_places is None else are_places
+        arms = 1j * motions.turns[shafts] * (places - held * self.centres[shafts])
         arms /= np.maximum(np.abs(motions.correlations[shafts]), TINY)
         turned = 1j * motions.turns[self.owners] * self.offsets
         is_own = self._is_of(shafts)
         parts = [
-            is_own * (unit / self.counts[self.owners] + part[:, None] * turned)
+            is_own * (unit * held[:, None] / self.counts[self.owners] + part[:, None] * turned)
             for unit, part in ((1.0, arms.real), (1j, arms.imag))
         ]
         return np.array(parts, np.complex128)

@@ -11,6 +11,8 @@ from engine.errors import EngineError
 
 # κ L² of a shaft.
 SHAFT_STIFFNESS = 3e3
+# A shaft of fewer points has no direction.
+FEWEST_POINTS = 2
 
 
 class Shaft(NamedTuple):
@@ -41,15 +43,18 @@ class Hinge(NamedTuple):
 
 
 class Aim(NamedTuple):
-    """A target of a place in the rest of a shaft.
+    """A target of a place in the rest of a shaft, or of a way there.
 
-    `max_force` is its largest force, per L.
+    `max_force` is its largest force, per L, and `weight` a factor of its stiffness. A way turns
+    with the shaft and is nowhere: its aim turns the shaft and moves it nowhere.
     """
 
     shaft: int
     place: complex
     target: complex
     max_force: float = inf
+    weight: float = 1.0
+    is_way: bool = False
 
 
 class Aims(NamedTuple):
@@ -59,6 +64,8 @@ class Aims(NamedTuple):
     places: Complexes
     targets: Complexes
     max_forces: Floats
+    weights: Floats
+    are_places: Floats  # 1 for places, 0 for ways
 
     @classmethod
     def of(cls, aims: Sequence[Aim], count: int) -> "Aims | None":
@@ -82,12 +89,14 @@ class Aims(NamedTuple):
                 )
         if not aims:
             return None
-        shafts, places, targets, forces = zip(*aims, strict=True)
+        shafts, places, targets, forces, weights, are_ways = zip(*aims, strict=True)
         return cls(
             readonly(np.array(shafts, np.intp)),
             readonly(np.array(places, np.complex128)),
             readonly(np.array(targets, np.complex128)),
             readonly(np.array(forces, np.float64)),
+            readonly(np.array(weights, np.float64)),
+            readonly(1.0 - np.array(are_ways, np.float64)),
         )
 
 
@@ -106,3 +115,18 @@ class Motions(NamedTuple):
     means: Complexes
     correlations: Complexes
     turns: Complexes
+
+
+def require_armature(shafts: Sequence[Shaft], hinges: Sequence[Hinge]) -> None:
+    """Raise an `EngineError` unless shafts have a direction and hinges name shafts that exist."""
+    for number, shaft in enumerate(shafts):
+        if len(shaft.points) < FEWEST_POINTS or not np.ptp(shaft.rest) != 0:
+            raise EngineError("Shaft {number} needs two different points.", number=number)
+    for hinge in hinges:
+        if not {hinge.first, hinge.second} <= set(range(len(shafts))):
+            raise EngineError(
+                "A hinge joins shafts {first} and {second}, but there are only {count}.",
+                first=hinge.first,
+                second=hinge.second,
+                count=len(shafts),
+            )

@@ -105,6 +105,18 @@ def measure_distances(
     return np.array(found)
 
 
+def spread_points(points: Complexes, count: int) -> list[int]:
+    """Return the indices of at most so many points that are far from each other."""
+    if len(points) == 0:
+        return []
+    chosen = [0]
+    distances = np.abs(points - points[0])
+    while len(chosen) < min(count, len(points)):
+        chosen.append(int(np.argmax(distances)))
+        distances = np.minimum(distances, np.abs(points - points[chosen[-1]]))
+    return chosen
+
+
 def _smooth(depth: Floats) -> Floats:
     """Return a smooth step from 0 to 1 over depths from 0 to 1."""
     share = np.clip(depth, 0.0, 1.0)

@@ -11,7 +11,13 @@ import numpy as np
 import shapely
 
 from engine.arrays import Complexes, Floats, readonly
-from engine.domain.material.limb import measure_distances, measure_half_widths, require_bone
+from engine.domain.material.end_parts import EndPart
+from engine.domain.material.limb import (
+    measure_distances,
+    measure_half_widths,
+    require_bone,
+    spread_points,
+)
 from engine.geometry import as_xy, shapely_region
 
 POINTS = 3  # on the axis of a bone
@@ -33,12 +39,14 @@ class LimbShape(NamedTuple):
     """The drawing around a bone.
 
     `half_widths` are those to the left and to the right, in pixels. `limb_range` says from where to
-    where the bone lies in a limb, as parts of its length.
+    where the bone lies in a limb, as parts of its length. `end_part` is the rigid part at the end
+    of a limb's last bone.
     """
 
     half_widths: Floats
     limb_range: tuple[float, float]
     stations: Floats
+    end_part: EndPart | None = None
 
     @property
     def half_width(self) -> float:
@@ -69,7 +77,10 @@ def shaft_points(limb: LimbShape, start: complex, end: complex, *, is_last: bool
     length = abs(end - start)
     clear = min(CLEAR * limb.half_width / length, MOST_CLEAR)
     low = max(clear, limb.limb_range[0])
-    high = 1.0 if is_last else min(1 - clear, limb.limb_range[1])
+    if limb.end_part is not None:
+        high = limb.end_part.neck - clear
+    else:
+        high = 1.0 if is_last else min(1 - clear, limb.limb_range[1])
     low = min(low, high - SHORTEST_SHAFT)
     points = start + np.linspace(low, high, POINTS) * (end - start)
     return readonly(np.asarray(points, np.complex128))
@@ -109,7 +120,7 @@ def body_points(
             distances = [shapely.distance(part, places) for part in parts]
             is_body &= np.argmin(distances, axis=0) != own
     left = candidates[is_body]
-    return readonly(left[_spread(left, BODY_POINTS)])
+    return readonly(left[spread_points(left, BODY_POINTS)])
 
 
 def larger_end(loops: Sequence[Complexes], start: complex, end: complex) -> int:
@@ -156,15 +167,3 @@ def _cut_limb(
 def _nearest_part(parts: Sequence[shapely.Geometry], place: complex) -> int:
     point = shapely.Point(place.real, place.imag)
     return int(np.argmin([shapely.distance(part, point) for part in parts]))
-
-
-def _spread(points: Complexes, count: int) -> list[int]:
-    """Return the indices of points that are far from each other."""
-    if len(points) == 0:
-        return []
-    chosen = [0]
-    distances = np.abs(points - points[0])
-    while len(chosen) < min(count, len(points)):
-        chosen.append(int(np.argmax(distances)))
-        distances = np.minimum(distances, np.abs(points - points[chosen[-1]]))
-    return chosen

@@ -28,7 +28,12 @@ SHAFTS = (Shaft(UPPER, UPPER), Shaft(LOWER, LOWER))
 ARMATURE = Armature.place(BOUNDARY, SHAFTS, [Hinge(0, 1, JOINT, JOINT)])
 HANDLES = Handles.place(BOUNDARY, np.array([END], complex), None, ARMATURE)
 FREE = Handles.place(BOUNDARY, np.array([END], complex))
-AIMS = (Aim(0, ROOT, ROOT + 0.05j), Aim(0, JOINT, 0.3j, 10.0))
+AIMS = (
+    Aim(0, ROOT, ROOT + 0.05j),
+    Aim(0, JOINT, 0.3j, 10.0),
+    Aim(1, END, 0.2j + END, 30.0, weight=2.0),
+    Aim(1, 0.5, 0.5 * np.exp(0.2j), 5.0, is_way=True),
+)
 
 
 def objective(handles=HANDLES, aims=AIMS):

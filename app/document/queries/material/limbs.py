@@ -1,7 +1,13 @@
 """Limbs of a layer: its chains of bones, with their rigid points, and the points of the body."""
 
-from dataclasses import dataclass
+from cmath import phase
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
 
 from app.document.layer import Layer
 from app.document.queries.material.boundary_stiffness import stiff_outline
@@ -11,7 +17,11 @@ from app.document.rig.chains import Chain, find_chains
 from engine.arrays import Complexes
 from engine.deform import Armature, Hinge, Shaft
 from engine.domain.material.shafts import LimbCut, LimbShape, body_points, shaft_points
+from engine.geometry import RigidMotion
 from engine.maps import Boundary
+
+# κ L² of each point of the rigid part at an end.
+END_STIFFNESS = 1e4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,6 +32,7 @@ class LimbChain:
     places: tuple[complex, ...]
     shapes: tuple[LimbShape, ...]  # around each bone
     first_shaft: int  # number of its first bone's shaft
+    end_shaft: int | None  # number of the rigid part at its end
     parent: int | None  # number of the shaft at whose end it starts; None for the body
 
     @property
@@ -33,6 +44,17 @@ class LimbChain:
         return [abs(end - start) for start, end in self.bones]
 
 
+class PlacedLimbs(NamedTuple):
+    """Where bones carry the handles of their chains, by id.
+
+    A joint lies in the middle between the places to which its bones carry it. `angles` are those of
+    the rigid parts at ends.
+    """
+
+    places: Mapping[int, complex]
+    angles: Mapping[int, float]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Limbs:
     """All limbs of a layer; parents come first."""
@@ -41,9 +63,9 @@ class Limbs:
     body: Complexes  # points of the outline that belong to no limb
 
     @cached_property
-    def bone_shafts(self) -> list[Shaft]:
-        """The shafts of all bones."""
-        shafts = []
+    def shafts(self) -> list[Shaft]:
+        """The shafts of all bones, then those of the rigid parts at ends."""
+        shafts, ends = [], []
         for limb in self.limbs:
             for number, ((start, end), shape) in enumerate(
                 zip(limb.bones, limb.shapes, strict=True)
@@ -51,22 +73,63 @@ class Limbs:
                 is_last = number == len(limb.shapes) - 1
                 points = shaft_points(shape, start, end, is_last=is_last)
                 shafts.append(Shaft(points, points))
-        return shafts
+            part = limb.shapes[-1].end_part
+            if limb.end_shaft is not None and part is not None:
+                ends.append(Shaft(part.points, part.points, END_STIFFNESS))
+        return shafts + ends
 
     @cached_property
-    def bone_hinges(self) -> list[Hinge]:
-        """The hinges between bones."""
+    def hinges(self) -> list[Hinge]:
+        """The hinges between shafts."""
         hinges = []
         for limb in self.limbs:
             for number, joint in enumerate(limb.places[1:-1], limb.first_shaft):
                 hinges.append(Hinge(number, number + 1, joint, joint))
             if limb.parent is not None:
                 hinges.append(Hinge(limb.parent, limb.first_shaft, limb.places[0], limb.places[0]))
+            if limb.end_shaft is not None:
+                last, end = limb.first_shaft + len(limb.shapes) - 1, limb.places[-1]
+                hinges.append(Hinge(last, limb.end_shaft, end, end))
         return hinges
 
-    def bones_in(self, boundary: Boundary) -> Armature:
-        """Return the bones alone, on a boundary."""
-        return Armature.place(boundary, self.bone_shafts, self.bone_hinges)
+    @cached_property
+    def rigid_ends(self) -> frozenset[int]:
+        """The ids of the ends with a rigid part, which a pose holds in place of the drawing."""
+        return frozenset(limb.chain.end for limb in self.limbs if limb.end_shaft is not None)
+
+    @cached_property
+    def points(self) -> Complexes:
+        """The points of all shafts, (t,)."""
+        return np.concatenate([shaft.points for shaft in self.shafts])
+
+    def locate(self, positions: Complexes) -> PlacedLimbs:
+        """Return where the bones carry the handles, with the points (t,) at these positions."""
+        starts = np.cumsum([0, *(len(shaft.points) for shaft in self.shafts)])
+        motions = [
+            RigidMotion.fit(shaft.points, positions[start : start + len(shaft.points)])
+            for shaft, start in zip(self.shafts, starts[:-1], strict=True)
+        ]
+        found, angles = dict[int, list[complex]](), dict[int, float]()
+        for limb in self.limbs:
+            pairs = zip(limb.bones, pairwise(limb.chain.handles), strict=True)
+            for number, (bone, ids) in enumerate(pairs):
+                for identity, place in zip(ids, bone, strict=True):
+                    motion = motions[limb.first_shaft + number]
+                    found.setdefault(identity, []).append(_carry(motion, place))
+            if limb.end_shaft is not None:
+                motion = motions[limb.end_shaft]
+                found[limb.chain.end] = [_carry(motion, limb.places[-1])]
+                angles[limb.chain.end] = phase(motion.factor)
+        places = {identity: sum(carried) / len(carried) for identity, carried in found.items()}
+        return PlacedLimbs(places, angles)
+
+    def armature_in(self, boundary: Boundary) -> Armature:
+        """Return the bones and the ends of limbs, without the body, on a boundary."""
+        return Armature.place(boundary, self.shafts, self.hinges)
+
+
+def _carry(motion: RigidMotion, place: complex) -> complex:
+    return motion.factor * place + motion.shift
 
 
 @memoized_on
@@ -84,6 +147,7 @@ def find_limbs(layer: Layer) -> Limbs | None:
                 places=tuple(places),
                 shapes=tuple(by_ends[ends] for ends in links),
                 first_shaft=count,
+                end_shaft=None,
                 parent=last.get(chain.root),
             )
         )
@@ -91,6 +155,10 @@ def find_limbs(layer: Layer) -> Limbs | None:
         last[chain.end] = count - 1
     if not limbs:
         return None
+    for number, limb in enumerate(limbs):
+        if limb.shapes[-1].end_part is not None:
+            limbs[number] = replace(limb, end_shaft=count)
+            count += 1
     cuts = [
         LimbCut(limb.places[0], limb.places[1], limb.places[-1], limb.shapes[0])
         for limb in limbs

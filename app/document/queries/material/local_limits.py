@@ -10,6 +10,7 @@ from app.document.queries.material.boundary_stiffness import stiff_outline
 from app.document.queries.memo import memoized_on
 from app.document.rig.chains import Bone
 from engine.arrays import Complexes, Floats
+from engine.domain.material.end_parts import find_end_part
 from engine.domain.material.shafts import LimbShape, joint_share, measure_limb
 from engine.errors import EngineError
 from engine.geometry import next_on_loop
@@ -23,12 +24,18 @@ def limb_shapes(layer: Layer) -> Mapping[Bone, LimbShape]:
     A bone that leaves the drawing, as after a change of the cut-out, is left out.
     """
     places, found = {handle.id: handle.position for handle in layer.handles}, {}
+    loops, joints = layer.domain.loops, layer.bone_joints
     for bone in layer.bones:
         if bone.is_limb:
+            start, end = (places[i] for i in bone.ends)
             try:
-                found[bone] = measure_limb(layer.domain.loops, *(places[i] for i in bone.ends))
+                shape = measure_limb(loops, start, end)
             except EngineError:
                 continue
+            if bone.ends[1] not in joints:
+                others = [place for i, place in places.items() if i not in bone.ends]
+                shape = shape._replace(end_part=find_end_part(loops, start, end, others))
+            found[bone] = shape
     return found
 
 
@@ -52,9 +59,14 @@ def joint_shares(layer: Layer, points: Complexes) -> Floats:
     shares = np.zeros(len(points))
     for bone, shape in limb_shapes(layer).items():
         start, end = (layer.handle(identity).position for identity in bone.ends)
-        joints = [start, end] if bone.ends[1] in layer.bone_joints else [start]
-        # A limb also bends where it leaves the body.
-        for place in (*joints, start + shape.limb_range[0] * (end - start)):
+        # A limb also bends where it leaves the body, and at the neck of its end part.
+        bending = [0.0, shape.limb_range[0]]
+        if bone.ends[1] in layer.bone_joints:
+            bending.append(1.0)
+        elif shape.end_part is not None:
+            bending.append(shape.end_part.neck)
+        for share in bending:
+            place = start + share * (end - start)
             shares = np.maximum(shares, joint_share(points, place, shape.half_width))
     return shares
 

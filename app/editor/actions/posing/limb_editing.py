@@ -1,5 +1,6 @@
 """Actions on limbs: the side to which a joint bends."""
 
+from cmath import phase
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -51,7 +52,11 @@ def turn_last_bones(
             continue
         centre, way = start.places[joint], moved[end].position - start.places[joint]
         place = centre + way / (abs(way) or 1.0) * limb.lengths[-1]
-        turned[end] = replace(moved[end], position=place)
+        angle = moved[end].rotation
+        if angle is not None:
+            # The hand turns with its bone.
+            angle += phase((place - centre) / ((start.places[end] - centre) or 1.0))
+        turned[end] = replace(moved[end], position=place, rotation=angle)
         if len(before) == 1:
             side = bend_side(start.places[before[0]], centre, place) or None
             turned[joint] = replace(start.targets[joint], side=side or start.targets[joint].side)

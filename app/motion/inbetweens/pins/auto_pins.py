@@ -122,7 +122,7 @@ class AutoPins:
         """Return the targets of the handles during a segment."""
         clip, layer = self.clip, self.clip.layer
         own = clip_segments(clip)[number]
-        keys = [clip.keys[index] for index in (own.first, own.last)]
+        keys = clip.keys[own.first], clip.keys[own.last]
         ends = [sampler.samples(key.pose).positions for key in keys]
         slopes = np.zeros((2, len(layer.handles)), dtype=np.complex128)
         for side, other in enumerate(segment.neighbours):
@@ -134,7 +134,7 @@ class AutoPins:
         anchor, firmness = layer.anchor if layer.has_parent else None, self._firmness(segment)
         limbs, bones, count = find_limbs(layer), None, len(layer.handles)
         if limbs is not None:
-            bones = segment_bones(layer, limbs, np.array(ends)[:, count:])
+            bones = segment_bones(layer, limbs, keys, np.array(ends)[:, count:])
             firmness = firmness_on_limbs(layer, limbs, firmness, segment.is_pinned)
         return SegmentPins(
             is_pinned=segment.is_pinned,

@@ -5,13 +5,17 @@ keyframes a bone has an angle against the one before it (the body, for a root), 
 joint, and a lack of rigidity f / u − p. In between these three are blended in the axes of the bone
 before, so that nothing changes at the keyframes. The body moves as in the base. Where the end of a
 chain of two bones is pinned, both bones turn further to bring it there.
+
+A foot, a hand or a head is one more part at the end of a chain, and moves like a bone. With an
+angle of its own, or pinned, its angle in the drawing's axes is blended instead, and a pinned one
+goes from place to place by 3t² − 2t³.
 """
 
 from cmath import exp, phase
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import sqrt
+from math import pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -32,12 +36,18 @@ class ChainOfBones(NamedTuple):
         The root, the joints and the end in the drawing.
     end : int
         Number of the pinned point at the end.
+    end_part : int or None
+        The rigid part at the end; without it the end is the last point of the last bone.
+    has_own_angle : bool
+        Whether the end part's angle is blended in the drawing's axes.
     """
 
     parent: int
     parts: tuple[int, ...]
     joints: tuple[complex, ...]
     end: int
+    end_part: int | None = None
+    has_own_angle: bool = False
 
 
 class RigidPart(NamedTuple):
@@ -76,11 +86,14 @@ class SegmentBones:
         Places of all points at the keyframes.
     chains : sequence of ChainOfBones
         Each after the chain that carries it.
+    revolutions : int
+        Additional whole turns of the body.
     """
 
     rest: Sequence[Complexes]
     ends: Complexes
     chains: Sequence[ChainOfBones]
+    revolutions: int = 0
 
     @cached_property
     def at_keys(self) -> list[list[RigidPart]]:
@@ -100,9 +113,15 @@ class SegmentBones:
         parts: dict[int, RigidPart] = {0: self._fit(places)[0]}
         for chain in self.chains:
             motions = self._blended(chain, time, parts[chain.parent])
-            if chain.end in pinned and len(motions) == 2:
-                motions = _brought_to(chain, motions, pinned[chain.end])
+            goal = pinned.get(chain.end)
+            if goal is not None and chain.end_part is not None:
+                goal = self._pinned_place(chain, time)
+            if goal is not None and len(motions) == 2:
+                lack = self._end_lack(chain, time, motions[-1])
+                motions = _brought_to(chain, motions, goal - lack)
             parts |= zip(chain.parts, motions, strict=True)
+            if chain.end_part is not None:
+                parts[chain.end_part] = self._end(chain, time, motions[-1], goal)
         # The body's points are where they are.
         wanted = [places[: len(self.rest[0])]]
         for number, rest in enumerate(self.rest[1:], 1):
@@ -119,19 +138,68 @@ class SegmentBones:
         """Return the motions of a chain's bones, by blended angles."""
         numbers, motions = (chain.parent, *chain.parts), [before]
         for earlier, own, joint in zip(numbers, chain.parts, chain.joints, strict=False):
-            (first, last), (here, there) = (
-                [key[number] for key in self.at_keys] for number in (own, earlier)
-            )
-            angles = first.turn / here.turn, last.turn / there.turn
-            turn = motions[-1].turn * angles[0] * exp(1j * time * phase(angles[1] / angles[0]))
-            gaps = [
-                (part.at(joint) - base.at(joint)) / base.turn
-                for part, base in ((first, here), (last, there))
-            ]
-            gap = motions[-1].turn * ((1 - time) * gaps[0] + time * gaps[1])
-            lack = (1 - time) * first.lack + time * last.lack
-            motions.append(RigidPart(joint, motions[-1].at(joint) + gap, turn, lack))
+            motions.append(self._blended_part(own, earlier, joint, time, motions[-1]))
         return motions[1:]
+
+    def _blended_part(
+        self, own: int, earlier: int, joint: complex, time: float, before: RigidPart
+    ) -> RigidPart:
+        """Return the motion of a part on the one before it, which moves by `before`."""
+        (first, last), (here, there) = (
+            [key[number] for key in self.at_keys] for number in (own, earlier)
+        )
+        swept = self._relative_turn(own, earlier)
+        turn = before.turn * first.turn / here.turn * exp(1j * time * swept)
+        gaps = [
+            (part.at(joint) - base.at(joint)) / base.turn
+            for part, base in ((first, here), (last, there))
+        ]
+        gap = before.turn * ((1 - time) * gaps[0] + time * gaps[1])
+        lack = (1 - time) * first.lack + time * last.lack
+        return RigidPart(joint, before.at(joint) + gap, turn, lack)
+
+    def _end(
+        self, chain: ChainOfBones, time: float, before: RigidPart, goal: complex | None
+    ) -> RigidPart:
+        """Return the motion of the rigid part at a chain's end, pinned to a goal."""
+        own, joint = chain.end_part or 0, chain.joints[-1]
+        end = self._blended_part(own, chain.parts[-1], joint, time, before)
+        if chain.has_own_angle or goal is not None:
+            numbers = (0, *self._parts_to_end(chain), own)
+            steps = [self._relative_turn(*pair) for pair in zip(numbers[1:], numbers, strict=False)]
+            swept = self._body_turn + sum(steps)
+            end = end._replace(turn=self.at_keys[0][own].turn * exp(1j * time * swept))
+        return end if goal is None else end._replace(place=goal)
+
+    def _pinned_place(self, chain: ChainOfBones, time: float) -> complex:
+        """Return the place of a pinned rigid part at a chain's end."""
+        first, last = (key[chain.end_part or 0].at(chain.joints[-1]) for key in self.at_keys)
+        return first + time * time * (3 - 2 * time) * (last - first)
+
+    def _parts_to_end(self, chain: ChainOfBones) -> tuple[int, ...]:
+        """Return the parts between the body and a chain's end."""
+        before = next((each for each in self.chains if chain.parent in each.parts), None)
+        return (*(self._parts_to_end(before) if before is not None else ()), *chain.parts)
+
+    def _relative_turn(self, own: int, earlier: int) -> float:
+        """Return by how much a part turns against another from key to key, the shorter way."""
+        angles = [key[own].turn / key[earlier].turn for key in self.at_keys]
+        return phase(angles[1] / angles[0])
+
+    @property
+    def _body_turn(self) -> float:
+        first, last = (key[0].turn for key in self.at_keys)
+        return phase(last / first) + 2 * pi * self.revolutions
+
+    def _end_lack(self, chain: ChainOfBones, time: float, last: RigidPart) -> complex:
+        """Return what the last bone lacks to bring the chain's end to its place."""
+        if chain.end_part is None:
+            return last.turn * complex(last.lack[-1])
+        joint, bone, end = chain.joints[-1], chain.parts[-1], chain.end_part
+        lacks = [
+            (key[end].at(joint) - key[bone].at(joint)) / key[bone].turn for key in self.at_keys
+        ]
+        return complex(last.turn * ((1 - time) * lacks[0] + time * lacks[1]))
 
 
 def _brought_to(chain: ChainOfBones, motions: list[RigidPart], goal: complex) -> list[RigidPart]:
