@@ -27,6 +27,7 @@ from engine.interpolation.inbetweens import PointValues
 from engine.interpolation.series.residual import combine_arrays
 from engine.maps import HarmonicMap
 
+DISTINCT = 1e-6  # of the largest: combinations of unknowns that matter less are left out
 MET = 1e-6  # of the diameter: error of periods that are closed
 
 
@@ -111,13 +112,16 @@ class Constraints:
         rows = sample_domain(boundary, anchor, anchor=anchor, values_at=nodes)
         poses = PoseValues.of(sample_keyframes(maps, rows), turns).at(rows.paths.beside)
         fz = np.exp(poses.log_fz)
+        g = poses.conj_eta / fz
+        h_only = replace(corrector, variables=known.of_h(np.eye(known.count)))
+        known = known.of_h(_useful_forms(h_only, fz, g))
         (at_transform,) = boundary.span.evaluate(known.h, transform.nodes, orders=(0,))
         return cls(
-            corrector=replace(corrector, variables=known.of_h(np.eye(known.count))),
+            corrector=replace(corrector, variables=known),
             values=poses,
             extension=transform.at(np.concatenate([anchor, nodes])),
             real_parts=freeze(at_transform.real.astype(np.float32)),
-            moves=freeze(_places(corrector, fz, poses.conj_eta / fz) - (pins - sites.anchor)),
+            moves=freeze(_places(corrector, fz, g) - (pins - sites.anchor)),
             is_anchored=is_anchored,
         )
 
@@ -156,6 +160,24 @@ class Constraints:
         missed = np.abs(periods).max(initial=0.0)
         is_met = bool(missed <= MET * self.corrector.boundary.size)
         return replace(found, is_finished=is_met)
+
+
+def _useful_forms(corrector: PointCorrector, fz: Complexes, g: Complexes) -> Floats:
+    """Return the combinations (N, M) of the unknowns that act on the constraints of frames (q, s).
+
+    The smallest h that meets the constraints of one of these frames is among them, and so is
+    nearly the smallest of a frame between them.
+    """
+    still = np.zeros_like(fz[0])
+    frames = [(np.ones_like(still), still), *zip(fz, g, strict=True)]
+    rows = [
+        CorrectedFrame.of(
+            corrector, BaseFrame(*frame, still, -1), corrector.variables.nothing
+        ).constraint_rows()
+        for frame in frames
+    ]
+    _, sizes, forms = np.linalg.svd(np.concatenate(rows), full_matrices=False)
+    return np.asarray(forms[sizes > DISTINCT * sizes[0]].T)
 
 
 def _places(corrector: PointCorrector, fz: Complexes, g: Complexes) -> Complexes:

@@ -37,8 +37,8 @@ class FrameSolution(NamedTuple):
     ----------
     weights : float64, shape (q,)
         Of the poses: the given ones times `share`.
-    h : complex128, shape (n,), or None
-        Coefficients in the span.
+    forms, x : complex128, shape (n, M), and float64, shape (M,), or None
+        h is forms @ x, coefficients in the span. Solutions of one solver have the same forms.
     shift : complex
         Translation.
     densities : Densities or None
@@ -55,7 +55,8 @@ class FrameSolution(NamedTuple):
     """
 
     weights: Floats
-    h: Complexes | None
+    forms: Complexes | None
+    x: Floats
     shift: complex
     densities: Densities | None
     rho: float
@@ -188,9 +189,9 @@ class FrameSolver:
             miss = np.append(-lacking, found.x - x)
             off = float(np.abs(np.append(lacking, real_parts(found.x - x))).max())
             beyond = off + curb.excess if found.is_finished else np.inf
-            h = constraints.corrector.variables.h @ found.x
             solution = _packed(weights, blend, curb, densities, beyond)
-            solutions.append(solution._replace(h=h, shift=found.shift))
+            forms = constraints.corrector.variables.h
+            solutions.append(solution._replace(forms=forms, x=found.x, shift=found.shift))
             if off <= CLOSE:
                 break
             states, misses = [*states, state][-REMEMBERED:], [*misses, miss][-REMEMBERED:]
@@ -210,7 +211,9 @@ def _packed(
 ) -> FrameSolution:
     """Return a solution without constraints."""
     curbed = float(np.abs(curb.residual).max())
-    return FrameSolution(weights, None, 0j, densities, blend.rho, curbed, beyond, share=1.0)
+    return FrameSolution(
+        weights, None, np.zeros(0), 0j, densities, blend.rho, curbed, beyond, share=1.0
+    )
 
 
 def _accelerated(states: Floats, misses: Floats) -> Floats:

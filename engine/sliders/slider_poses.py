@@ -138,8 +138,8 @@ class SliderPoses:
     ) -> SliderFrame:
         """Add a solution to an in-between of the same sampled domain at a time in [0, 1].
 
-        `extension`, the transform at the nodes, is needed if the solution has densities. `basis` is
-        the span's at the nodes, and needed if the solution has an h.
+        `extension`, the transform at the nodes, is needed if the solution has densities; `basis`,
+        the solution's forms at the nodes, if it has forms.
         """
         before = base.derivatives(time)
         log_fz, log_fz_z, g, gz = self.values.blended(solution.weights)
@@ -152,8 +152,8 @@ class SliderPoses:
             # H does not turn the anchor.
             log_fz += values[:, 0] - 1j * values[0, 0].imag
             log_fz_z += slopes[:, 0]
-        if solution.h is not None and basis is not None:
-            h, h_z = basis.evaluate(solution.h[:, None])
+        if solution.forms is not None and basis is not None:
+            h, h_z = basis.evaluate(solution.x[:, None])
             log_fz += h[:, 0]
             log_fz_z += h_z[:, 0]
         log_fz_z += before.fzz / before.fz

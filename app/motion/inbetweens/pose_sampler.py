@@ -169,6 +169,11 @@ class PoseSampler:
                 self._basis = SpanBasis.of(sites.boundary.span, sites.paths.nodes)
             return self._basis
 
+    def basis_of(self, forms: Complexes) -> SpanBasis:
+        """Return functions with coefficients (n, j) in the span at the nodes, cached by content."""
+        key = ("forms", *self._content, digest(forms))
+        return SAMPLED.find(key, lambda: self.basis.combined(forms), nbytes_or_0)
+
     def inbetweens_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a segment; motion through smooth keys keeps the limits."""
         return self._prepared(self.segment_of(segment, bounds, variant), variant)

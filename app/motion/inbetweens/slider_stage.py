@@ -119,7 +119,7 @@ def add_sliders(
     """Return an in-between of a sampler at a time with sliders."""
     solution, poses = sliders
     extension = None if solution.densities is None else sampler.extension
-    basis = None if solution.h is None else sampler.basis
+    basis = None if solution.forms is None else sampler.basis_of(solution.forms)
     found = sampler.slider_poses(*_apart(poses))
     return found.add_to(base, time, solution, extension, basis)
 

@@ -110,7 +110,8 @@ class Slider:
 
     def frame(self, weights):
         solution = self.solution(weights)
-        added = (self.base, self.time, solution, self.extension, self.basis)
+        basis = None if solution.forms is None else self.basis.combined(solution.forms)
+        added = (self.base, self.time, solution, self.extension, basis)
         return self.poses.add_to(*added).frame(), solution
 
 

@@ -32,7 +32,12 @@ class SpanBasis(NamedTuple):
     def nbytes(self) -> int:
         return self.values.nbytes + self.slopes.nbytes
 
-    def evaluate(self, functions: Complexes) -> tuple[Complexes, Complexes]:
+    def combined(self, forms: Complexes) -> Self:
+        """Return the functions with coefficients (n, j) instead."""
+        single = forms.astype(np.complex64)
+        return type(self)(freeze(self.values @ single), freeze(self.slopes @ single))
+
+    def evaluate(self, functions: Complexes | Floats) -> tuple[Complexes, Complexes]:
         """Return functions (n, j) and their derivatives at the nodes, (s, j) each."""
         single = functions.astype(np.complex64)
         values, slopes = self.values @ single, self.slopes @ single
