@@ -189,3 +189,39 @@ def test_limits_are_kept_where_pins_ask_too_much():
     a, b = np.abs(values.fz), np.abs(values.g)
     assert (a + b).max() <= max(1.4, most) * 1.002
     assert (a - b).min() >= min(0.7, least) * 0.998
+
+
+def test_pins_far_out_of_reach_cost_few_solves(monkeypatch):
+    solves = []
+
+    def solve(*given, **options):
+        solves.append(solve_correction(*given, **options))
+        return solves[-1]
+
+    monkeypatch.setattr(pinning, "solve_correction", solve)
+    # Neighbours that are to pass each other.
+    handles = np.array([-1.7, -1.6, 1.6 - 0.1j])
+    maps, stage = keyframes(), stage_of(SHAPE, handles, ANCHOR)
+    corrector = build_corrector(stage.sites.boundary, ANCHOR, handles)
+    beside = value_points_for_corrections(corrector)
+    base = stage_of(SHAPE, handles, ANCHOR, beside).between(maps, Variant.NU)
+    pins = SegmentPins(
+        is_pinned=np.zeros(3, dtype=bool),
+        ends=np.array([f(handles) for f in maps]),
+        slopes=np.array([[9, -9, 0], [0, 0, 0]], dtype=complex),
+        weights=np.array([[1, 1, 1], [0, 0, 0]], dtype=float),
+        firmness=np.ones(3),
+        is_anchored=True,
+    )
+    series = solve_pins(base, corrector, pins, WIDE)
+    unfinished = sum(not solved.is_finished for solved in solves)
+    assert unfinished >= pinning.OUT_OF_REACH
+    assert len(solves) < 3 * pinning.ROUGHLY
+    known = base.with_correction(series)
+    for time in (0.0, 1.0):
+        assert_allclose(known.frame(time).positions, base.frame(time).positions, atol=1e-12)
+    values = known.values_at(np.linspace(0.02, 0.98, 49))
+    a, b = np.abs(values.fz), np.abs(values.g)
+    assert (a + b).max() <= 1.002 * WIDE.sigma_a
+    assert (a - b).min() >= 0.998 * WIDE.sigma_b
+    assert (b / a).max() <= 1.005 * WIDE.k

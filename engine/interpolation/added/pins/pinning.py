@@ -13,7 +13,12 @@ from engine.deform.correction.frame import BaseFrame
 from engine.deform.correction.limits import frame_limits, max_feasible_share
 from engine.deform.correction.solver import PointSolution, solve_correction
 from engine.interpolation.added.pins.targets import SegmentPins
-from engine.interpolation.series.chebyshev import PiecewiseSeries, constant_one, separate_variables
+from engine.interpolation.series.chebyshev import (
+    PiecewiseSeries,
+    chebyshev_nodes,
+    constant_one,
+    separate_variables,
+)
 from engine.maps import Bounds
 
 # Accuracy of the series and of the omitted terms. Unknowns are of the size of |h|, and positions
@@ -21,6 +26,14 @@ from engine.maps import Bounds
 TOLERANCE, LEFT_OUT = 5e-6, 1e-6
 SHORTEST = 2.0**-3  # pieces of time are not halved below this
 DEGREES = (8, 16)
+# If so many solves end early, the targets are far out of reach. One series of this degree will do:
+# a finer one would only follow where each solve has ended.
+OUT_OF_REACH, ROUGHLY = 3, 16
+CHECKED = 64  # times at which a segment that reaches its limits is checked again
+
+
+class _OutOfReachError(Exception):
+    """Raised when too many solves of a segment have ended early."""
 
 
 class CorrectionBase(NamedTuple):
@@ -88,25 +101,43 @@ def fit_pin_corrections(
     """
     known, size = corrector.variables, corrector.boundary.size
     solved: dict[float, PointSolution] = {}
-    share = 1.0
+    share, most_unfinished = 1.0, float(OUT_OF_REACH)
     limits = _limits(corrector, base_at, bounds)
 
     def at(time: float) -> Floats:
         nonlocal share
+        if time in solved:
+            return unknowns(solved[time])
         base = base_at(time)
         targets = pins.targets(time, base.places, base.anchor)
         near = min(solved, key=lambda other: abs(other - time), default=None)
         start = None if near is None else solved[near]
         solved[time] = found = solve_correction(corrector, base.nodes, targets, start, throw=False)
         share = min(share, max_feasible_share(corrector, base.samples, found.x, limits))
+        if sum(not each.is_finished for each in solved.values()) >= most_unfinished:
+            raise _OutOfReachError
+        return unknowns(found)
+
+    def unknowns(found: PointSolution) -> Floats:
         return np.append(found.x, [found.shift.real / size, found.shift.imag / size])
 
     def values(times: Floats) -> Floats:
         return np.array([at(time) for time in times.tolist()]).T
 
-    forms, series = separate_variables(
-        values, tolerance=TOLERANCE, left_out=LEFT_OUT, shortest=SHORTEST, degrees=DEGREES
-    )
+    try:
+        forms, series = separate_variables(
+            values, tolerance=TOLERANCE, left_out=LEFT_OUT, shortest=SHORTEST, degrees=DEGREES
+        )
+    except _OutOfReachError:
+        most_unfinished = np.inf
+        forms, series = separate_variables(
+            values, tolerance=np.inf, left_out=LEFT_OUT, degrees=(ROUGHLY,)
+        )
+    if share < 1.0:
+        # Near the limits the series may exceed them between the solved times.
+        for time in ((1.0 + chebyshev_nodes(CHECKED)) / 2).tolist():
+            x, samples = (forms @ series(time))[:-2], base_at(time).samples
+            share = min(share, max_feasible_share(corrector, samples, x, limits))
     # One share for the whole segment, so that a limit reached for a moment causes no jolt.
     forms *= share
     count = known.count
