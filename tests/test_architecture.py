@@ -23,7 +23,7 @@ PUTTING_OFF = {"__getattr__", "__dir__"}
 
 # Calls that say what a thing is, and compute nothing.
 # That BLAS keeps to one thread is said once for all that the engine does.
-DECLARATIONS = {"RigidMotion", "TypeVar", "field", "get_args", "threadpool_limits"}
+DECLARATIONS = {"Similarity", "TypeVar", "field", "get_args", "threadpool_limits"}
 
 
 def module_files() -> dict[str, Path]:

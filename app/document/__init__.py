@@ -31,6 +31,7 @@ from app.document.channels.kinds import (
     CAMERA as CAMERA,
     DEPTH as DEPTH,
     DRAW_ORDER as DRAW_ORDER,
+    IK_TARGET as IK_TARGET,
     LAYER_KINDS as LAYER_KINDS,
     MARKER as MARKER,
     OPACITY as OPACITY,
@@ -61,8 +62,10 @@ from app.document.channels.springs import SPRING_PRESETS as SPRING_PRESETS, Spri
 from app.document.channels.tangent_mode import TangentMode as TangentMode
 from app.document.channels.tracks import Track as Track, TrackKey as TrackKey
 from app.document.channels.values import (
+    MAX_SCALE as MAX_SCALE,
     Camera as Camera,
     DrawOrder as DrawOrder,
+    IkTarget as IkTarget,
     Transform as Transform,
 )
 from app.document.checks import LAST_FRAME as LAST_FRAME
@@ -88,6 +91,7 @@ from app.document.commands.keys import (
 )
 from app.document.commands.layers import (
     group_commands as group_commands,
+    joint_commands as joint_commands,
     layer_commands as layer_commands,
     switch_group_commands as switch_group_commands,
 )
@@ -213,6 +217,11 @@ from app.document.queries.layers.depth import (
     DEFAULT_DEPTH_EXTENT as DEFAULT_DEPTH_EXTENT,
     DepthPoint as DepthPoint,
     depth_points_at as depth_points_at,
+)
+from app.document.queries.layers.layer_bones import (
+    bones_above as bones_above,
+    layers_with_targets as layers_with_targets,
+    limb_ends as limb_ends,
 )
 from app.document.queries.layers.layer_tree import (
     TreeRow as TreeRow,

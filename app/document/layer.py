@@ -50,6 +50,7 @@ V = TypeVar("V")
 # of a limb of width W needs ln(σ_a / σ_b) ≥ θ W / ℓ.
 FOLDING_ANGLE = 130.0
 FOLDING_JOINTS = Bounds(k=0.85, sigma_a=4.0, sigma_b=0.15)
+MOST_IK_PARENTS = 100
 NO_CHANNELS: ChannelKeys = MappingProxyType({})
 NO_KEY = N_("There is no key at frame {frame}.")
 NO_HANDLE = N_("There is no handle with the id {identity}.")
@@ -134,10 +135,26 @@ class Layer:
     # Keys of the parent, each valid from its frame on. An attached layer has an anchor.
     attachments: tuple[Attachment, ...] = ()
     origin: LayerOrigin | None = None  # in a file that can be reloaded
+    # How many parents bend as bones when the layer is dragged or has an IK target. None counts the
+    # parents up to one that has several children.
+    ik_parents: int | None = None
+    # Side to which these bones bend, as of `solve_chain`; 0 keeps the side of their transforms.
+    pole_side: int = 0
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         require_id(self.id, _("A layer"))
+        require(
+            self.ik_parents is None or 0 <= self.ik_parents <= MOST_IK_PARENTS,
+            N_("The number of IK parents must be from 0 to {largest}, not {ik_parents}."),
+            largest=MOST_IK_PARENTS,
+            ik_parents=self.ik_parents,
+        )
+        require(
+            self.pole_side in {-1, 0, 1},
+            N_("A pole side must be -1, 0 or 1, not {pole_side}."),
+            pole_side=self.pole_side,
+        )
         require(bool(self.name.strip()), N_("A layer needs a name."))
         require_point(self.corner, _("The corner of {layer!r}").format(layer=self.name))
         require(

@@ -49,7 +49,7 @@ from app.motion import (
 )
 from app.render import View
 from app.solving import KeyResolver
-from engine.geometry import RigidMotion
+from engine.geometry import Similarity
 
 # Most bytes of intermediate values that inactive layers keep, once they have series.
 MOST_RELEASABLE_BYTES = 64 * 2**20
@@ -231,12 +231,12 @@ class Project(Revised):
             layers=self.runtimes.layers, transforms=self.measured.parent_transforms.value
         )
 
-    def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
+    def placements(self, frames: Iterable[int], unknown: Similarity) -> list[Similarity]:
         """Return the active layer's placements at some frames; `unknown` while they are unknown."""
         frames = list(frames)
         return self.placed_at(self.selection.active, frames) or [unknown for _ in frames]
 
-    def placed_at(self, layer: int, frames: Sequence[int]) -> list[RigidMotion] | None:
+    def placed_at(self, layer: int, frames: Sequence[int]) -> list[Similarity] | None:
         """Return a layer's placements at some frames; None while they are unknown."""
         return self.evaluator.placements(self.document, layer, frames)
 

@@ -26,7 +26,7 @@ from app.texts import _, message_of
 from engine.arrays import Bytes
 from engine.domain import find_closed_cuts
 from engine.domain.meshing.mesh import Mesh
-from engine.geometry import IDENTITY_MOTION, RigidMotion, Similarity
+from engine.geometry import IDENTITY_MOTION, Similarity
 
 _SMALL: Final = 0.75  # frame pixels per picture pixel
 _TILE: Final = 4096  # pixels each way drawn at once, at most
@@ -43,7 +43,7 @@ class PosedFrame(NamedTuple):
 
     scene: SceneFrame
     vertices: Mapping[int, VertexArray]  # by layer id, in the plane
-    camera: Similarity | RigidMotion  # moves the camera's view onto the canvas
+    camera: Similarity  # moves the camera's view onto the canvas
 
 
 class _Tile(NamedTuple):

@@ -56,12 +56,14 @@ from app.motion.parenting.attach import (
     attach_in_place as attach_in_place,
     reparent_in_place as reparent_in_place,
 )
+from app.motion.parenting.chain import require_anchor as require_anchor
+from app.motion.parenting.layer_pull import LayerPull as LayerPull
 from app.motion.parenting.parent_transforms import (
     ParentTransforms as ParentTransforms,
     find_parent_motion as find_parent_motion,
     layer_animation as layer_animation,
-    parenting_key as parenting_key,
 )
+from app.motion.parenting.parenting_key import parenting_key as parenting_key
 from app.motion.rival_methods.boundary_keyframes import (
     discrete_harmonic as discrete_harmonic,
     harmonic_coordinate_maps as harmonic_coordinate_maps,

@@ -20,19 +20,18 @@ from app.document import (
     clip_of,
     composite_layers,
     is_visible,
+    limb_ends,
     transform_at,
     without_foreign_clips,
 )
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.layer_frame import LayerFrame
 from app.motion.layer_stages import LayerStages, exact_budget
-from app.motion.parenting.chain import compose_chain, parent_links
-from app.motion.parenting.parent_transforms import (
-    ParentTransforms,
-    have_same_parents,
-    parenting_key,
-)
-from engine.geometry import IDENTITY_MOTION, RigidMotion
+from app.motion.parenting.layer_limbs import place_layer
+from app.motion.parenting.layer_pull import LayerPull
+from app.motion.parenting.parent_transforms import ParentTransforms
+from app.motion.parenting.parenting_key import have_same_parents, parenting_key
+from engine.geometry import IDENTITY_MOTION, Similarity
 
 # "exact" computes what is missing; "display" returns at once, if need be with placeholders.
 Quality = Literal["exact", "display"]
@@ -182,13 +181,13 @@ class Evaluator:
 
     def placements(
         self, document: Document, layer: int, frames: Sequence[int]
-    ) -> list[RigidMotion] | None:
+    ) -> list[Similarity] | None:
         """Return a layer's placements at some frames; None while they are unknown.
 
         While the layer itself is posed, its earlier transforms stay valid.
         """
         own, transforms = document.layer(layer), self.current_transforms(document)
-        if not own.attachments:
+        if not own.attachments and not limb_ends(document, layer):
             return [transform_at(document, own, frame) for frame in frames]
         if transforms is None and self.transforms is not None:
             is_same = have_same_parents(self.transforms.document, document, own)
@@ -211,13 +210,16 @@ class Evaluator:
         placed = {}
         for layer, each in shown.items():
             own = document.layer(layer)
-            if not own.attachments:
+            if not own.attachments and not limb_ends(document, layer):
                 placement = transform_at(document, own, each.frame)
             elif transforms is None or any(
-                parent.id in corrected for parent in document.all_ancestors(layer)
+                parent.id in corrected
+                for parent in (*document.all_ancestors(layer), *limb_ends(document, layer))
             ):
-                placement = compose_chain(
-                    parent_links(document, layer, each.frame),
+                placement = place_layer(
+                    document,
+                    layer,
+                    each.frame,
                     lambda layer, place: shown[layer.id].pivot_frame_at(place),
                     partial(self._earlier_transform, each.frame),
                 )
@@ -227,7 +229,21 @@ class Evaluator:
             placed[layer] = each if same else replace(each, placement=placement)
         return placed
 
-    def _earlier_transform(self, frame: float, layer: Layer, joint: Attachment) -> RigidMotion:
+    def pull(self, document: Document, layer: int, frame: float) -> LayerPull | None:
+        """Return the pull of a layer from where it is shown; None until all layers are shown."""
+        shown = {identity: stages.shown for identity, stages in self.layers.items()}
+        frames = {identity: each for identity, each in shown.items() if each is not None}
+        if frames.keys() < {each.id for each in document.layers}:
+            return None
+        return LayerPull(
+            document,
+            layer,
+            frame,
+            lambda layer, place: frames[layer.id].pivot_frame_at(place),
+            partial(self._earlier_transform, frame),
+        )
+
+    def _earlier_transform(self, frame: float, layer: Layer, joint: Attachment) -> Similarity:
         """Return the transform that an attachment kept in an earlier document, else identity."""
         earlier = self.transforms
         known = {each.id: each for each in earlier.document.layers} if earlier else {}

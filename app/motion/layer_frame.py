@@ -15,7 +15,7 @@ from app.motion.meshes.vertices import StreamedVertices, Vertices
 from app.motion.parenting.chain import PivotFrame
 from engine.arrays import Complexes
 from engine.domain import MeshedDomain
-from engine.geometry import IDENTITY_MOTION, RigidMotion
+from engine.geometry import IDENTITY_MOTION, Similarity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -33,7 +33,7 @@ class LayerFrame:
     correction: SecondaryCorrection | None = None  # of tracks and springs
     is_approximate: bool = False  # whether the correction is that of an earlier clip
     # Rigid motion from the layer to the scene. All other fields are in the layer's space.
-    placement: RigidMotion = IDENTITY_MOTION
+    placement: Similarity = IDENTITY_MOTION
 
     @property
     def is_current(self) -> bool:

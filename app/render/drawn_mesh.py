@@ -6,7 +6,7 @@ from app.motion import StreamedVertices, Vertices
 from app.render.gpu.context import is_software
 from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, to_float32_points
 from app.render.gpu.series_buffer import SeriesBuffer
-from engine.geometry import IDENTITY_MOTION, RigidMotion, Similarity
+from engine.geometry import IDENTITY_MOTION, Similarity
 from engine.streaming import MOST_ROWS, Series
 
 
@@ -26,9 +26,7 @@ class DrawnMesh:
         self._series_pose: PosedMesh | None = None
         self._current: tuple[Vertices, PosedMesh] | None = None
 
-    def pose(
-        self, vertices: Vertices, *, placement: RigidMotion | Similarity = IDENTITY_MOTION
-    ) -> PosedMesh:
+    def pose(self, vertices: Vertices, *, placement: Similarity = IDENTITY_MOTION) -> PosedMesh:
         """Return the mesh posed and painted by these vertices; new vertices are uploaded."""
         if self._current is None or self._current[0] is not vertices:
             self._current = vertices, self._placed(vertices)

@@ -10,7 +10,6 @@ from app.document import (
     DRAW_ORDER,
     LAYER_KINDS,
     SWITCH,
-    TRANSFORM,
     VISIBILITY,
     Attachment,
     ChannelKeys,
@@ -144,26 +143,6 @@ def with_switch_groups(document: Document, script: PoseScript) -> Document:
         (*others, made) = document.switch_groups
         document = replace(document, switch_groups=(*others, replace(made, keys=keys)))
     return document
-
-
-def warn_unused_transforms(document: Document, script: PoseScript) -> list[str]:
-    """Return notices of layers with transform keys that always have a parent."""
-    frames = range(document.frames.first, document.frames.last + 1)
-    notices = []
-    for part in script.layers:
-        if part.layer is None:
-            continue
-        layer = find_layer(document, part.layer)
-        if not layer.keys_of(TRANSFORM):
-            continue
-        ancestors = [document.parent_chain(layer.id, frame)[1:] for frame in frames]
-        if all(ancestors):
-            notices.append(
-                _("{layer} is attached to {parent}, so its own movement has no effect").format(
-                    layer=part.layer, parent=ancestors[0][0].name
-                )
-            )
-    return notices
 
 
 def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:

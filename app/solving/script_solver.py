@@ -26,6 +26,7 @@ from app.solving.drag.rig import Rig
 from app.solving.script.keys import PoseKey
 from app.solving.script.pose_script import LayerScript, PoseScript
 from app.solving.script.sounds import with_sounds
+from app.solving.script_limbs import warn_missed_targets, with_limbs
 from app.solving.script_poses import solve_pose, with_sliders
 from app.solving.script_scene import (
     find_layer,
@@ -33,7 +34,6 @@ from app.solving.script_scene import (
     warn_invisible_layers,
     warn_unused_cycles,
     warn_unused_switches,
-    warn_unused_transforms,
     with_attachments,
     with_switch_groups,
     with_world_transforms,
@@ -83,11 +83,12 @@ def pose_document(
             layer, more = with_sliders(document, layer, part.sliders, progress)
         document = document.with_layer(layer)
         notices += [*found, *more]
-    document = with_switch_groups(with_world_transforms(document, script), script)
+    document = with_limbs(with_world_transforms(document, script), script)
+    document = with_switch_groups(document, script)
     document = with_sounds(document, script.sounds, script.folder)
     return document, (
         *notices,
-        *warn_unused_transforms(document, script),
+        *warn_missed_targets(document),
         *warn_unused_switches(document),
         *warn_invisible_layers(document, script),
     )

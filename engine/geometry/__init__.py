@@ -32,13 +32,12 @@ from engine.geometry.polygon import (
     signed_area as signed_area,
     winding_number as winding_number,
 )
-from engine.geometry.rigid import (
-    IDENTITY_MOTION as IDENTITY_MOTION,
-    RigidMotion as RigidMotion,
-    Similarity as Similarity,
-)
 from engine.geometry.segments import (
     Pieces as Pieces,
     bisect_segments as bisect_segments,
     distance_to_segments as distance_to_segments,
+)
+from engine.geometry.similarity import (
+    IDENTITY_MOTION as IDENTITY_MOTION,
+    Similarity as Similarity,
 )

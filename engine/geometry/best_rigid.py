@@ -4,7 +4,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, as_points, as_reals
 from engine.errors import EngineError
-from engine.geometry.rigid import IDENTITY_MOTION, RigidMotion
+from engine.geometry.similarity import IDENTITY_MOTION, Similarity
 
 NEGATIVE_WEIGHTS = "weights must be finite and not negative, not {weights}."
 TOWARDS_REST = 1e-6  # pull of all points together towards the identity
@@ -12,7 +12,7 @@ TOWARDS_REST = 1e-6  # pull of all points together towards the identity
 
 def fit_rigid(
     places: Complexes, offsets: Complexes, weights: Floats, pivot: complex | None = None
-) -> RigidMotion:
+) -> Similarity:
     """Return argmin over R of Σ w |R p − p − o|² + (ε / h) Σ |R p − p|².
 
     In closed form and smooth in its arguments; the identity where all offsets are 0.
@@ -40,4 +40,4 @@ def fit_rigid(
         mean = wanted_mean = pivot
     turn = complex(np.sum(total * np.conj(places - mean) * (wanted - wanted_mean)))
     factor = turn / abs(turn) if turn else 1.0 + 0j
-    return RigidMotion(factor, complex(wanted_mean - factor * mean))
+    return Similarity(factor, complex(wanted_mean - factor * mean))

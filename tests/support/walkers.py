@@ -8,11 +8,11 @@ from animations import still_document, within
 from PIL import Image, ImageDraw
 
 from app.document import Document, Layer, handle_commands
-from engine.geometry import RigidMotion
+from engine.geometry import Similarity
 
 SIZE = (240, 200)
 HANDLES = {"hip": 70 + 150j, "knee": 66 + 100j, "foot": 84 + 44j}
-FAR = RigidMotion(1.0 + 0j, 60 - 6j)  # where the far leg is drawn, beside the near one
+FAR = Similarity(1.0 + 0j, 60 - 6j)  # where the far leg is drawn, beside the near one
 # Where the leg of the other side is drawn, which is its mirror image.
 AXIS = 120.0
 LEG = np.array([54 + 28j, 106 + 28j, 106 + 58j, 84 + 58j, 84 + 172j, 54 + 172j])

@@ -161,13 +161,29 @@ the first key. A layer has
    "opacity": [[0, 1], [12, 0.2]],
    "order": [[24, {"in_front_of": "arm"}], [36, {"behind": "body"}], [48, null]]
 
-"movement" shifts the posed layer as a whole, and turns it around its anchor, or else around the
-middle of its shape. Attached layers move with it. While the layer itself is attached it follows
-only its parent. "opacity" is a number, or changes evenly from key to key. "order" moves the layer
-right in front of or right behind another layer from a frame on; null returns it to its place in
-DRAWING. A layer that stands still has these too, with "handles": {} and "keys": [{"frame": 0}].
-Keys of the camera and of movements have ease and passing as those of poses. They start and end at
-rest, unless they have an ease.
+"movement" moves the posed layer as a whole ("shift"), turns it around its joint by degrees
+("turn"), and scales it there ("scale"). The joint of an attached layer is its anchor. Another layer
+turns around its anchor, or else around the middle of its shape. Attached layers move with it.
+"opacity" is a number, or changes evenly from key to key. "order" moves the layer right in front of
+or right behind another layer from a frame on; null returns it to its place in DRAWING. A layer that
+stands still has these too, with "handles": {} and "keys": [{"frame": 0}]. Keys of the camera and of
+movements have ease and passing as those of poses. They start and end at rest, unless they have an
+ease.
+
+"bones" at the top of the script names attached layers that bend as a limb, from root to end. The
+last one then goes to the places of its channel "ik_target", and the others turn at their joints:
+
+   "bones": [["thigh", "shin", "foot"], {"layers": ["upper arm", "forearm", "hand"], "side": -1}],
+   "layers": [..., {"layer": "foot", ...,
+      "channels": {"ik_target": [{"frame": 0, "place": [310, 60]},
+                                 {"frame": 12, "place": [310, 60]},
+                                 {"frame": 18, "place": [250, 90], "turn": 20}]}}]
+
+"place" is where the joint of the foot is in the scene, and "turn" how far the foot is turned there,
+in degrees. Between two keys at the same place the foot stays planted. "mix" is 1 by default; with 0
+the foot follows its parents, and their own turns hold. Beyond reach the limb is straight. "side" is
+1 for joints that bend to the left of the way from root to end, and -1 to the right; by default they
+bend as drawn.
 
 "channels" sets any channel of a layer, with an easing and a tangent for every key:
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 from app.document.channels.key import KeyedProperty
 from app.document.channels.kind import ChannelKind, Quantity, ValueField
 from app.document.channels.tangent_mode import TangentMode
-from app.document.channels.values import Camera, DrawOrder, Transform
+from app.document.channels.values import MAX_SCALE, Camera, DrawOrder, IkTarget, Transform
 from app.document.checks import require
 from app.texts import N_
 
@@ -85,13 +85,35 @@ TRANSFORM: Final = ChannelKind[Transform](
     fields=(
         ValueField("shift", Quantity.POINT, default=0j),
         ValueField("turn", Quantity.ANGLE, default=0.0),
+        ValueField("scale", Quantity.FACTOR, default=1.0),
     ),
     make=Transform,
     components=(
         KeyedProperty(lambda key: key.value.shift, SAME_PLACE),
         KeyedProperty(lambda key: key.value.turn, SAME_TURN, period=tau),
+        KeyedProperty(lambda key: log(key.value.scale), SAME_ZOOM),
     ),
-    join=Transform,
+    join=lambda shift, turn, scale: Transform(
+        shift, turn, min(max(exp(scale), 1 / MAX_SCALE), MAX_SCALE)
+    ),
+    moves_layer=True,
+)
+IK_TARGET: Final = ChannelKind[IkTarget](
+    name="ik_target",
+    label=N_("IK target"),
+    icon="BULLSEYE",
+    fields=(
+        ValueField("place", Quantity.POINT),
+        ValueField("turn", Quantity.ANGLE, default=0.0),
+        ValueField("mix", Quantity.SHARE, default=1.0),
+    ),
+    make=IkTarget,
+    components=(
+        KeyedProperty(lambda key: key.value.place, SAME_PLACE),
+        KeyedProperty(lambda key: key.value.turn, SAME_TURN, period=tau),
+        KeyedProperty(lambda key: key.value.mix, SAME_OPACITY),
+    ),
+    join=lambda place, turn, mix: IkTarget(place, turn, min(max(mix, 0.0), 1.0)),
     moves_layer=True,
 )
 OPACITY: Final = ChannelKind[float](
@@ -176,5 +198,8 @@ VOLUME: Final = ChannelKind[float](
 
 # Kinds whose keys a layer stores by their channels' ids.
 LAYER_KINDS: Final[Mapping[str, ChannelKind[Any]]] = MappingProxyType(
-    {kind.name: kind for kind in (TRANSFORM, OPACITY, TINT, DRAW_ORDER, VISIBILITY, DEPTH, SLIDER)}
+    {
+        each.name: each
+        for each in (TRANSFORM, IK_TARGET, OPACITY, TINT, DRAW_ORDER, VISIBILITY, DEPTH, SLIDER)
+    }
 )

@@ -13,6 +13,7 @@ from engine.arrays import Complexes
 from engine.geometry import Similarity
 
 MAX_ZOOM: Final = 1000.0  # largest zoom; its inverse is the smallest
+MAX_SCALE: Final = 100.0  # of a layer; its inverse is the smallest
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,14 +49,52 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class Transform:
-    """A rigid motion of the whole layer, applied after its pose."""
+    """A motion of the whole layer about its joint, after its pose and before its parents.
 
-    shift: complex = 0j  # pixels
-    turn: float = 0.0  # counter-clockwise around the pivot, in radians
+    The joint is the layer's anchor where the pose has it; for a layer without a parent, the pivot.
+    """
+
+    shift: complex = 0j  # pixels, in the axes of the parent's joint
+    turn: float = 0.0  # counter-clockwise, in radians
+    scale: float = 1.0  # interpolated by its logarithm
 
     def __post_init__(self) -> None:
         require_point(self.shift, _("A layer's movement"))
         _require_rotation(self.turn)
+        require(
+            1 / MAX_SCALE <= self.scale <= MAX_SCALE,
+            N_("A layer's scale must be from {smallest:g} to {largest:g}, not {scale:g}."),
+            smallest=1 / MAX_SCALE,
+            largest=MAX_SCALE,
+            scale=self.scale,
+        )
+
+    @property
+    def factor(self) -> complex:
+        """Rotation and scale as one factor."""
+        return self.scale * complex(np.exp(1j * self.turn))
+
+    def about(self, pivot: complex) -> Similarity:
+        """Return the motion about a pivot in the layer's space."""
+        return Similarity(self.factor, pivot + self.shift - self.factor * pivot)
+
+
+@dataclass(frozen=True, slots=True)
+class IkTarget:
+    """Where a layer's joint and rotation are wanted in the scene; its parents bend as bones."""
+
+    place: complex  # of the layer's joint
+    turn: float = 0.0  # of the layer, counter-clockwise, in radians
+    mix: float = 1.0  # from the transforms of the layers (0) to the target (1)
+
+    def __post_init__(self) -> None:
+        require_point(self.place, _("An IK target"))
+        _require_rotation(self.turn)
+        require(
+            0 <= self.mix <= 1,
+            N_("The mix of an IK target must be from 0 to 1, not {mix:g}."),
+            mix=self.mix,
+        )
 
 
 @dataclass(frozen=True, slots=True)

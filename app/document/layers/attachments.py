@@ -26,6 +26,7 @@ class Attachment(BaseKey):
     rest_rotation: float = (
         0.0  # rotation of the parent, in radians, at which the layer has its own rotation
     )
+    rest_scale: float = 1.0  # scale of the parent at which the layer has its own scale
     frame: int = 0  # first frame of the attachment
     # Offset of the anchor from the point. It rotates with the parent if the layer does.
     offset: complex = 0j
@@ -34,6 +35,9 @@ class Attachment(BaseKey):
     keep_world_transform: bool = False
     # The frame whose placement is kept, if earlier than `frame`. Needs `keep_world_transform`.
     kept_since: int | None = None
+    # Whether the layer's own transform moves it at its joint. Up to schema 4 it did not while the
+    # layer had a parent, and after a detach it was a motion of the scene.
+    applies_transform: bool = True
     # Whether the layer blends to its placement under the next attachment, so that nothing jumps
     # there. Needs `keep_world_transform`.
     blends_to_next: bool = False
@@ -48,6 +52,11 @@ class Attachment(BaseKey):
             math.isfinite(self.rest_rotation),
             N_("The rotation of a joint must be finite, not {rest_rotation}."),
             rest_rotation=self.rest_rotation,
+        )
+        require(
+            math.isfinite(self.rest_scale) and self.rest_scale > 0,
+            N_("The scale of a joint must be above 0, not {rest_scale}."),
+            rest_scale=self.rest_scale,
         )
         require(
             self.kept_since is None or 0 <= self.kept_since <= self.frame,

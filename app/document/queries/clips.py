@@ -11,6 +11,7 @@ from app.document.channels.sliders import Slider
 from app.document.keyframe import Handle, Keyframe
 from app.document.layer import Layer
 from app.document.model import Document
+from app.document.queries.layers.layer_bones import limb_ends
 from app.document.queries.memo import memoized_on
 from app.document.settings import FrameRange
 
@@ -65,8 +66,8 @@ class Clip:
     fps: float  # because springs swing in seconds
     # A rival method to compare with the layer's own variant.
     baseline: Baseline | None = None
-    # Clips of all ancestors, without ancestors of their own. Set only if springs or scene-space
-    # tracks depend on the motion of the ancestors.
+    # Clips of all ancestors, without ancestors of their own, and of the limbs whose IK targets move
+    # them. Set only if springs or scene-space tracks depend on their motion.
     parents: "tuple[Clip, ...]" = ()
     sliders: tuple[SliderChannel, ...] = ()  # the enabled ones
 
@@ -110,8 +111,13 @@ def clip_of(document: Document, layer: int) -> Clip:
             sliders=_slider_channels(document, each),
         )
 
-    parents = document.all_ancestors(layer) if any(feels) else ()
-    return clip(own, tuple(map(clip, parents)))
+    if not any(feels):
+        return clip(own)
+    parents = [*document.all_ancestors(layer)]
+    for end in limb_ends(document, layer):
+        parents += [end, *document.all_ancestors(end.id)]
+    others = [each for each in dict.fromkeys(parents) if each is not own]
+    return clip(own, tuple(map(clip, others)))
 
 
 def _slider_channels(document: Document, layer: Layer) -> tuple[SliderChannel, ...]:

@@ -19,7 +19,7 @@ from app.document.queries.pose_tangents import pose_segments
 from app.document.settings import FrameRange, require_fps
 from app.errors import LissomError
 from app.texts import _
-from engine.geometry import RigidMotion, Similarity
+from engine.geometry import Similarity
 
 # Pixels: tolerance for rounding.
 SAME_PLACE = 1e-6
@@ -157,7 +157,7 @@ def _is_same(document: Document, first: int, second: int) -> bool:
 def _moves_alike(document: Document, first: int, second: int) -> bool:
     """Return whether the camera and all interpolated channels of all layers are equal."""
     shots = [camera_at(document, frame) for frame in (first, second)]
-    pairs: list[list[RigidMotion | Similarity]] = [
+    pairs: list[list[Similarity]] = [
         [shot.canvas_motion(document.canvas) for shot in shots if shot is not None]
     ]
     pairs += [

@@ -1,9 +1,11 @@
 """Parenting: attaching layers to a parent, and detaching them."""
 
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 
 from app.document import (
     PARENT,
+    TRANSFORM,
     Attachment,
     Channel,
     Command,
@@ -27,8 +29,9 @@ from app.motion import (
     reparent_in_place as joint_that_keeps,
 )
 from app.texts import N_, _, ngettext
-from engine.geometry import RigidMotion
+from engine.geometry import Similarity
 
+SAME_SCALE = 1e-9
 ATTACHING = JobKind(_("Attaching a layer"), _("The layer cannot be attached"))
 PARENT_IS_DESCENDANT = N_(
     "{parent} cannot be attached to {name}, because {name} is attached to {parent}. Detach "
@@ -260,13 +263,23 @@ def _reparent_child_command(
     return combine_commands(_("Attach"), found)
 
 
-def _detach_command(document: Document, child: int, frame: int, placement: RigidMotion) -> Command:
+def _detach_command(document: Document, child: int, frame: int, placement: Similarity) -> Command:
     """Return the command that detaches a layer; it keeps its placement at a frame.
 
-    From then on its own transform moves it.
+    From then on its own transform moves it, which takes the scale of the parents.
     """
+    layer, channel = document.layer(child), Channel(TRANSFORM, child)
+    scale = abs(transform_at(document, layer, frame).inverse.compose(placement).factor)
+    commands: list[Command] = []
+    if abs(scale - 1) > SAME_SCALE:
+        start = TRANSFORM.key(document.frames.first, TRANSFORM.default)
+        for key in layer.keys_of(TRANSFORM) or (start,):
+            value = replace(key.value, scale=key.value.scale * scale)
+            commands.append(channel_commands.set_key(channel, key.frame, value))
+            document = commands[-1](document)
     own = transform_at(document, document.layer(child), frame)
-    return layer_commands.detach_layer(child, *own.inverse.compose(placement))
+    commands.append(layer_commands.detach_layer(child, *own.inverse.compose(placement)))
+    return combine_commands(_("Detach"), commands)
 
 
 @with_project

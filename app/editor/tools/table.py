@@ -6,10 +6,11 @@ from app.editor.parts.tools import CUT_TOOLS, STIFFNESS_TOOLS
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.tools.anchor_tool import AnchorTool
-from app.editor.tools.attach_tool import AttachTool
 from app.editor.tools.edit_tools.cut_out_tools import CutBrushTool, CutClickTool, KnifeTool
 from app.editor.tools.edit_tools.joint_tools import JointTool
 from app.editor.tools.edit_tools.stiffness_tools import BoneTool, StiffnessBrushTool
+from app.editor.tools.layer_tools.attach_tool import AttachTool
+from app.editor.tools.layer_tools.pull_tool import JointGripTool, PullTool
 from app.editor.tools.mirror_axis_tool import MirrorAxisTool
 from app.editor.tools.move_tool import MoveTool
 from app.editor.tools.pose_tool import PoseTool
@@ -33,7 +34,7 @@ TOOLS: Final[tuple[type[Tool], ...]] = (
 MODES: Final[dict[str, tuple[type[Tool], ...]]] = {
     **dict.fromkeys(CUT_TOOLS, (CutBrushTool, KnifeTool, CutClickTool)),
     **dict.fromkeys(STIFFNESS_TOOLS, (StiffnessBrushTool, BoneTool)),
-    "move": (MirrorAxisTool, MoveTool, AnchorTool),
+    "move": (MirrorAxisTool, JointGripTool, PullTool, MoveTool, AnchorTool),
 }
 
 

@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.document import TRANSFORM, Document, FrameRange, Layer
+from app.document import IK_TARGET, TRANSFORM, Document, FrameRange, Layer
 from engine.arrays import Floats
 
 MOST_MEASURED: Final = 1_000  # frames; shorter ranges are measured completely
@@ -176,6 +176,7 @@ def _keyed(document: Document, layer: Layer, settling: int) -> Iterator[int]:
     After each of them follow `settling` frames for springs that the layer sets swinging.
     """
     moves = [*layer.key_frames, *(key.frame for key in layer.keys_of(TRANSFORM))]
+    moves += [key.frame for key in layer.keys_of(IK_TARGET)]
     jumps = [frame for cycle in layer.cycles for frame in (cycle.first, cycle.last)]
     jumps += [cycle.until for cycle in layer.cycles if cycle.until is not None]
     jumps += [frame for joint in layer.attachments for frame in (joint.frame, joint.kept_from)]

@@ -7,7 +7,7 @@ import numpy as np
 from app.document import Clip, Track, TrackSample, track_at
 from app.motion.inbetweens.spring_offsets import ParentMotion, PositionsAt, SpringOffsets
 from engine.arrays import Booleans, Complexes, Floats
-from engine.geometry import IDENTITY_MOTION, RigidMotion
+from engine.geometry import IDENTITY_MOTION, Similarity
 
 TURNED = 50.0  # pixels that weigh as much as a rotation by one radian
 
@@ -97,7 +97,7 @@ class SecondaryMotion:
         reach = float(np.average(reaches, weights=sizes)) if np.any(sizes) else 1.0
         return SecondaryTargets(wanted, self._is_own, turns, reach, frozenset(tracked))
 
-    def _parent_transform(self, frame: float) -> RigidMotion:
+    def _parent_transform(self, frame: float) -> Similarity:
         return self._carried(frame) if self._carried else IDENTITY_MOTION
 
     def _offset(

@@ -9,7 +9,7 @@ import numpy as np
 from app.document import Clip, Spring, segment_time_at, spring_root
 from app.rigging import FADE_FRAMES, SpringResponse, frames_to_settle, simulate_spring, turn_arm
 from engine.arrays import Complexes
-from engine.geometry import IDENTITY_MOTION, RigidMotion, diameter
+from engine.geometry import IDENTITY_MOTION, Similarity, diameter
 
 MAX_SPRING_OFFSET: Final = 0.3  # fraction of the layer's diameter
 PIECE: Final = 64  # smallest number of frames of a piece
@@ -18,7 +18,7 @@ KEPT_PLACES: Final = 2**14
 Key = TypeVar("Key")
 Value = TypeVar("Value")
 # Rigid motion of an attached layer at a frame.
-ParentMotion = Callable[[float], RigidMotion]
+ParentMotion = Callable[[float], Similarity]
 # Positions (h,) of a layer's handles at a frame.
 PositionsAt = Callable[[float], Complexes]
 
@@ -70,7 +70,7 @@ class SpringOffsets:
         """
         piece, time = self._piece(spring, frame, at)
         parent_motion = self._carried(frame) if self._carried else IDENTITY_MOTION
-        free = complex(piece.free.at(time)) * parent_motion.factor.conjugate()
+        free = complex(piece.free.at(time)) / parent_motion.factor
         if piece.about is None:
             return free
         arm = places[self._index[spring.handle]] - places[self.roots[spring.handle]]

@@ -15,6 +15,7 @@ from engine.interpolation import Frame
 # Newton steps to the point of a parent at a place; each step squares the error.
 MAX_STEPS = 20
 NEWTON_TOLERANCE = 1e-12  # fraction of the layer's size
+SAME_SCALE = 1e-9
 MAX_STARTS = 2_000  # largest number of triangles searched for a start
 
 
@@ -41,19 +42,22 @@ def attach_in_place(
     if place is None:
         others = [joint for joint in own.attachments if joint is not held]
         anchor = anchor_or_default(own) if others else _common_point(joints, own, other, frame)
-        place = complex(
-            here.apply(np.array([_pivot_frame(joints, own, anchor, frame).position]))[0]
-        )
     else:
         anchor = _source(joints, own, here.apply_inverse(place), frame)
+    pivot = _pivot_frame(joints, own, anchor, frame).position
+    # From now on the layer's own transform acts about the new joint.
+    here = joints.joint_placement(child, frame, pivot)
+    place = here.factor * pivot + here.shift
     at, away = _point_near(joints, other, there.apply_inverse(place), frame)
     turn = there.factor * _pivot_frame(joints, other, at, frame).rotation
+    scale = abs(turn / here.factor) if turns else 1.0
     return anchor, Attachment(
         parent=parent,
         parent_point=at,
         inherits_rotation=turns,
         # With the parent's current rotation, the child has its current rotation.
         rest_rotation=float(np.angle(turn) - np.angle(here.factor)) if turns else 0.0,
+        rest_scale=1.0 if abs(scale - 1) < SAME_SCALE else scale,
         offset=complex(away * there.factor / (turn if turns else 1.0)),
         frame=0 if held is None else held.frame,
     )

@@ -1,12 +1,17 @@
 """Transforms along the chain from a layer to its root ancestor."""
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.document import Attachment, Document, Layer, transform_at
-from engine.geometry import IDENTITY_MOTION, RigidMotion
+from app.document import TRANSFORM, Attachment, Document, Layer, Transform, layer_value_at
+from engine.geometry import IDENTITY_MOTION, Similarity
+
+UNMOVED: Final = Transform()
+NO_TURNS: Final[Mapping[int, float]] = MappingProxyType({})
 
 
 class PivotFrame(NamedTuple):
@@ -16,78 +21,112 @@ class PivotFrame(NamedTuple):
     rotation: complex  # of modulus 1
 
 
+# Position and rotation of a point in its layer's space.
+PivotFrameAt = Callable[[Layer, complex], PivotFrame]
+# The transform that an attachment with `keep_world_transform` keeps, without the layer's own. It is
+# relative to the parent's point, or in the scene after a detach.
+KeptTransform = Callable[[Layer, Attachment], Similarity]
+
+
 class ChainLink(NamedTuple):
     """A layer and its attachment at a time; None before the first attachment."""
 
     layer: Layer
     attachment: Attachment | None
-    # The layer's own transform. The identity while it has a parent; relative to the detach pose
-    # afterwards.
-    transform: RigidMotion
+    transform: Transform  # the layer's own, about its joint
+    # Motion of the scene after a detach, for attachments that do not apply the transform.
+    scene_motion: Similarity = IDENTITY_MOTION
+
+    @property
+    def has_joint(self) -> bool:
+        """Whether the layer turns about its anchor, as posed, and not about its pivot."""
+        joint = self.attachment
+        return joint is not None and (joint.parent is not None or joint.keep_world_transform)
+
+    def pivot(self, hinge: PivotFrameAt) -> complex:
+        """Return the point about which the layer turns, in its own space."""
+        if self.has_joint:
+            return hinge(self.layer, require_anchor(self.layer)).position
+        return self.layer.pivot
 
 
 def parent_links(
-    document: Document, layer: int, frame: float, *, before: bool = False
+    document: Document,
+    layer: int,
+    frame: float,
+    *,
+    before: bool = False,
+    turns: Mapping[int, float] = NO_TURNS,
 ) -> tuple[ChainLink, ...]:
     """Return the links from a layer, by its id, to its root ancestor at a frame.
 
-    The attachments are in effect from the frame on, or with `before` just before the frame.
+    The attachments are in effect from the frame on, or with `before` just before the frame. `turns`
+    are rotations of layers about their joints, in radians by id, on top of their transforms.
     """
-    chain = document.parent_chain(layer, frame, before=before)
     at = document.loop_frame(frame)
     links = []
-    for each in chain:
-        joint, movement = document.attachment_at(each, at, before=before), IDENTITY_MOTION
-        if joint is None or joint.parent is None:
-            movement = transform_at(document, each, at)
-        if joint is not None and joint.parent is None and joint.keep_world_transform:
-            movement = movement.compose(transform_at(document, each, joint.kept_from).inverse)
-        links.append(ChainLink(each, joint, movement))
+    for each in document.parent_chain(layer, frame, before=before):
+        joint = document.attachment_at(each, at, before=before)
+        own = layer_value_at(document, each, TRANSFORM, at) or UNMOVED
+        if joint is None or joint.applies_transform:
+            turn = turns.get(each.id)
+            own = replace(own, turn=own.turn + turn) if turn else own
+            links.append(ChainLink(each, joint, own))
+        elif joint.parent is None and joint.keep_world_transform:
+            begun = layer_value_at(document, each, TRANSFORM, joint.kept_from) or UNMOVED
+            motion = own.about(each.pivot).compose(begun.about(each.pivot).inverse)
+            links.append(ChainLink(each, joint, UNMOVED, motion))
+        else:
+            links.append(ChainLink(each, joint, UNMOVED if joint.parent is not None else own))
     return tuple(links)
 
 
 def compose_chain(
-    chain: Sequence[ChainLink],
-    hinge: Callable[[Layer, complex], PivotFrame],
-    kept: Callable[[Layer, Attachment], RigidMotion],
-) -> RigidMotion:
-    """Return the transform of a layer from its chain: the layer, its parent, and so on.
-
-    `hinge` returns position and rotation of a point in its layer's space. `kept` returns the
-    transform that an attachment with `keep_world_transform` keeps. It is relative to the parent's
-    point, or in the scene after a detach.
-    """
-    last, released, placement = chain[-1]
-    if released is not None and released.keep_world_transform:
-        placement = placement.compose(kept(last, released))
-    for (child, joint, _), (parent, _, _) in zip(chain[-2::-1], chain[:0:-1], strict=True):
-        if joint is None:
+    chain: Sequence[ChainLink], hinge: PivotFrameAt, kept: KeptTransform
+) -> Similarity:
+    """Return the transform of a layer from its chain: the layer, its parent, and so on."""
+    placement = IDENTITY_MOTION
+    for child, parent in zip(chain[::-1], (None, *chain[:0:-1]), strict=True):
+        joint, pivot = child.attachment, child.pivot(hinge)
+        if parent is None:
+            if joint is not None and joint.keep_world_transform:
+                placement = child.scene_motion.compose(kept(child.layer, joint))
+        elif joint is None:
             raise ValueError("only the last ancestor has no parent")
-        at, own = hinge(parent, joint.parent_point), hinge(child, require_anchor(child))
-        held = kept(child, joint) if joint.keep_world_transform else _attachment_transform(joint)
-        turn = placement.factor * at.rotation if joint.inherits_rotation else 1.0
-        place = placement.factor * at.position + placement.shift + turn * held.shift
-        factor = turn * held.factor
-        placement = RigidMotion(complex(factor), complex(place - factor * own.position))
+        else:
+            at = hinge(parent.layer, joint.parent_point)
+            held = (
+                kept(child.layer, joint)
+                if joint.keep_world_transform
+                else _attachment_transform(joint)
+            )
+            turn = placement.factor * at.rotation if joint.inherits_rotation else 1.0
+            place = placement.factor * at.position + placement.shift + turn * held.shift
+            factor = turn * held.factor
+            placement = Similarity(complex(factor), complex(place - factor * pivot))
+        if child.transform != UNMOVED:
+            placement = placement.compose(child.transform.about(pivot))
     return placement
 
 
-def _attachment_transform(joint: Attachment) -> RigidMotion:
+def _attachment_transform(joint: Attachment) -> Similarity:
     """Return the transform of an attached layer relative to the parent's point."""
-    return RigidMotion(
-        complex(np.exp(-1j * joint.rest_rotation)) if joint.inherits_rotation else 1.0, joint.offset
-    )
+    if not joint.inherits_rotation:
+        return Similarity(1.0, joint.offset)
+    return Similarity(complex(np.exp(-1j * joint.rest_rotation)) / joint.rest_scale, joint.offset)
 
 
 def blend_transforms(
-    layer: Layer, joint: Attachment, first: RigidMotion, last: RigidMotion, share: float
-) -> RigidMotion:
-    factor = first.factor * np.exp(1j * share * np.angle(last.factor / first.factor))
+    layer: Layer, joint: Attachment, first: Similarity, last: Similarity, share: float
+) -> Similarity:
+    ratio = last.factor / first.factor
+    size = abs(ratio) ** share
+    factor = first.factor * size * np.exp(1j * share * np.angle(ratio))
     # A detached layer is also blended at its anchor, as an attached one.
     anchor = require_anchor(layer) if joint.parent is None else 0j
     place, end = (held.factor * anchor + held.shift for held in (first, last))
     place += share * (end - place)
-    return RigidMotion(complex(factor), complex(place - factor * anchor))
+    return Similarity(complex(factor), complex(place - factor * anchor))
 
 
 def pivot_frame_at(position: complex, fz: complex) -> PivotFrame:

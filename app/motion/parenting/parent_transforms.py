@@ -1,25 +1,36 @@
 """Transforms of attached layers at any time (Section 7, "a user curve for the anchor")."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from app.document import TRANSFORM, Attachment, Document, Layer, Pose, clip_of
+from app.document import (
+    TRANSFORM,
+    Attachment,
+    Document,
+    Layer,
+    Pose,
+    clip_of,
+    layer_value_at,
+    limb_ends,
+)
 from app.motion.inbetweens.animation import Animation
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.spring_offsets import ParentMotion
 from app.motion.parenting.chain import (
+    UNMOVED,
     PivotFrame,
     blend_transforms,
-    compose_chain,
     parent_links,
     pivot_frame_at,
     require_anchor,
 )
+from app.motion.parenting.layer_limbs import find_turns, place_layer
 from app.motion.tracing.point_trails import PointTrails
 from engine.arrays import Complexes
-from engine.geometry import RigidMotion
+from engine.geometry import Similarity
 
 # Frames per job, about a millisecond each, and frames looked up per job, so that the worker soon
 # takes more urgent jobs.
@@ -61,8 +72,8 @@ class ParentTransforms:
             if points
         }
         self._siblings = siblings
-        self._placements: dict[tuple[int, float, bool], RigidMotion] = {}
-        self._kept: dict[tuple[int, Attachment, int], RigidMotion] = {}
+        self._placements: dict[tuple[int, float, bool], Similarity] = {}
+        self._kept: dict[tuple[int, Attachment, int], Similarity] = {}
         self._ahead = self._through()
 
     @property
@@ -77,7 +88,7 @@ class ParentTransforms:
         poses: Mapping[int, Pose] | None = None,
         *,
         before: bool = False,
-    ) -> RigidMotion:
+    ) -> Similarity:
         """Return the transform of a layer at a frame.
 
         `poses` are shown in place of the layers' own, by layer id. With `before`, the attachments
@@ -92,15 +103,16 @@ class ParentTransforms:
 
     def _compute(
         self, layer: int, frame: float, poses: Mapping[int, Pose], *, before: bool
-    ) -> RigidMotion:
-        chain = parent_links(self.document, layer, frame, before=before)
+    ) -> Similarity:
+        hinge = partial(self._joint, frame=frame, poses=poses)
         kept = partial(self.kept_transform, frame=frame)
-        return compose_chain(chain, partial(self._joint, frame=frame, poses=poses), kept)
+        return place_layer(self.document, layer, frame, hinge, kept, before=before)
 
-    def kept_transform(self, layer: Layer, joint: Attachment, frame: float) -> RigidMotion:
-        """Return the transform of a layer under an attachment with `keep_world_transform`.
+    def kept_transform(self, layer: Layer, joint: Attachment, frame: float) -> Similarity:
+        """Return the transform of a layer by an attachment with `keep_world_transform`.
 
-        With `blends_to_next`, it eases to the transform that the next attachment defines.
+        The layer's own transform is not in it. With `blends_to_next`, it eases to the transform
+        that the next attachment defines.
         """
         begun = self._keep(layer, joint, joint.kept_from, before=True)
         at = self.document.loop_frame(frame)
@@ -139,39 +151,49 @@ class ParentTransforms:
             return until
         return until - cycle.period * -(-(until - last) // cycle.period)
 
-    def _keep(self, layer: Layer, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
+    def _keep(self, layer: Layer, joint: Attachment, frame: int, *, before: bool) -> Similarity:
         """Return the transform that an attachment keeps from just before a frame, or at it."""
         known = layer.id, joint, frame
         if known not in self._kept:
             self._kept[known] = self._found(layer, joint, frame, before=before)
         return self._kept[known]
 
-    def _found(self, layer: Layer, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
+    def _found(self, layer: Layer, joint: Attachment, frame: int, *, before: bool) -> Similarity:
         hinge = partial(self._seen_from, layer.id, frame=frame)
         kept = partial(self.kept_transform, frame=frame)
-        here = compose_chain(
-            parent_links(self.document, layer.id, frame, before=before), hinge, kept
-        )
+        document, own = self.document, hinge(layer, require_anchor(layer))
+        here = place_layer(document, layer.id, frame, hinge, kept, before=before)
+        if joint.applies_transform:
+            turns = find_turns(document, layer.id, frame, hinge, kept, before=before)
+            link = parent_links(document, layer.id, frame, before=before, turns=turns)[0]
+            here = here.compose(link.transform.about(own.position).inverse)
         if joint.parent is None:
-            by = parent_links(self.document, layer.id, frame, before=True)[-1].transform
+            by = parent_links(document, layer.id, frame, before=True)[-1].scene_motion
             return here if before else by.inverse.compose(here)
-        there = compose_chain(
-            parent_links(self.document, joint.parent, frame, before=not before), hinge, kept
-        )
-        at = hinge(self.document.layer(joint.parent), joint.parent_point)
-        own = hinge(layer, require_anchor(layer))
+        there = place_layer(document, joint.parent, frame, hinge, kept, before=not before)
+        at = hinge(document.layer(joint.parent), joint.parent_point)
         turn = there.factor * at.rotation if joint.inherits_rotation else 1.0
         away = here.factor * own.position + here.shift - (there.factor * at.position + there.shift)
-        return RigidMotion(complex(here.factor / turn), complex(away / turn))
+        return Similarity(complex(here.factor / turn), complex(away / turn))
 
-    def parent_transform(self, layer: int, frame: float) -> RigidMotion:
+    def joint_placement(self, layer: int, frame: float, pivot: complex) -> Similarity:
+        """Return the placement of a layer at a frame without its own transform about a pivot."""
+        hinge = partial(self._joint, frame=frame, poses={})
+        kept = partial(self.kept_transform, frame=frame)
+        document = self.document
+        own = layer_value_at(document, document.layer(layer), TRANSFORM, frame) or UNMOVED
+        turn = find_turns(document, layer, frame, hinge, kept).get(layer, 0.0)
+        own = replace(own, turn=own.turn + turn)
+        return self.placement(layer, frame).compose(own.about(pivot).inverse)
+
+    def parent_transform(self, layer: int, frame: float) -> Similarity:
         """Return the transform of a layer by its parents, without its own corrections.
 
         Corrections neither move the anchor nor rotate the layer there.
         """
         hinge = partial(self._seen_from, layer, frame=frame)
         kept = partial(self.kept_transform, frame=frame)
-        return compose_chain(parent_links(self.document, layer, frame), hinge, kept)
+        return place_layer(self.document, layer, frame, hinge, kept)
 
     def _seen_from(self, layer: int, each: Layer, place: complex, frame: float) -> PivotFrame:
         """Return position and rotation of a point for the computation of a dependent layer.
@@ -224,7 +246,7 @@ def find_parent_motion(
 ) -> ParentMotion | None:
     """Return the function from frame to the layer's transform; None if it never moves."""
     own = document.layer(layer)
-    if not (own.has_parent or own.keys_of(TRANSFORM)):
+    if not (own.has_parent or own.keys_of(TRANSFORM) or limb_ends(document, layer)):
         return None
     return partial(ParentTransforms(document, siblings).parent_transform, layer)
 
@@ -242,33 +264,6 @@ def layer_animation(
         layer.domain, anchor=layer.anchor, points=points, sibling=siblings.get(identity)
     )
     return Animation(clip_of(document, identity), sampler=sampler, carried=carried)
-
-
-def parenting_key(document: Document) -> tuple[object, ...]:
-    """Return the values that determine the transforms; empty without attachments."""
-    involved = [
-        each
-        for child in document.layers
-        if child.attachments
-        for each in (child, *document.all_ancestors(child.id))
-    ]
-    return tuple(clip_of(document, each.id) for each in dict.fromkeys(involved))
-
-
-def have_same_parents(before: Document, document: Document, layer: Layer) -> bool:
-    """Return whether a layer of a document has the same parents as in an earlier document."""
-    own = next((each for each in before.layers if each.id == layer.id), None)
-    return (
-        own is not None
-        and (before.frames, before.loop) == (document.frames, document.loop)
-        and _of_parents(own) == _of_parents(layer)
-        and all(each in before.layers for each in document.all_ancestors(layer.id))
-    )
-
-
-def _of_parents(layer: Layer) -> tuple[object, ...]:
-    moves = layer.keys_of(TRANSFORM)
-    return layer.attachments, layer.anchor, layer.domain, moves, layer.cycles
 
 
 def _points(document: Document) -> dict[int, list[complex]]:

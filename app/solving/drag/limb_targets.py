@@ -11,7 +11,7 @@ from app.document import Layer, LimbChain, Limbs, Target
 from app.rigging import bend_side, solve_chain
 from app.solving.drag.limbs import PosedLimbs
 from engine.arrays import Complexes
-from engine.geometry import RigidMotion, diameter
+from engine.geometry import Similarity, diameter
 
 # Part of the shape's diameter: places that are off a rigid motion by less move as a whole.
 RIGID = 2e-3
@@ -49,7 +49,7 @@ def carry_body(
     most = RIGID * diameter(layer.domain.outline)
     if roots.issuperset(moved) and not layer.has_parent:
         ways = _places(start, moved), _places(targets, moved)
-        motion = RigidMotion.fit(*ways)
+        motion = Similarity.fit_rigid_motion(*ways)
         if _misfit(motion, *ways) <= most:
             carried = [i for i in body if i not in moved and not layer.is_locked(i)]
             places = motion.apply(_places(start, carried)).tolist()
@@ -61,7 +61,7 @@ def carry_body(
                 },
             }
     ways = _places(start, body), _places(targets, body)
-    return BodyTargets(targets, is_rigid=_misfit(RigidMotion.fit(*ways), *ways) <= most)
+    return BodyTargets(targets, is_rigid=_misfit(Similarity.fit_rigid_motion(*ways), *ways) <= most)
 
 
 def solve_limbs(
@@ -212,7 +212,7 @@ def _position(target: Target | None) -> complex | None:
     return None if target is None else target.position
 
 
-def _misfit(motion: RigidMotion, places: Complexes, wanted: Complexes) -> float:
+def _misfit(motion: Similarity, places: Complexes, wanted: Complexes) -> float:
     """Return the largest distance that a rigid motion leaves."""
     return float(np.abs(motion.apply(places) - wanted).max())
 

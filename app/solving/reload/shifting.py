@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from app.document import Document, Layer, Pose
+from app.document import IK_TARGET, Document, Layer, Pose
 from engine.maps import HarmonicMap
 
 
@@ -32,7 +32,11 @@ def shift_layer(layer: Layer, by: complex) -> Layer:
         else track
         for track in layer.tracks
     )
-    return layer.with_poses(
+    targets = (
+        replace(key, value=replace(key.value, place=key.value.place + by))
+        for key in layer.keys_of(IK_TARGET)
+    )
+    return layer.with_keys_of(IK_TARGET, targets).with_poses(
         map(moved, layer.poses),
         corner=layer.corner + by,
         domain=domain,

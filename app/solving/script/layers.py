@@ -35,6 +35,51 @@ class ScriptSwitchGroup:
     keys: tuple[Key[str], ...] = ()
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScriptLimb:
+    """Layers that bend as bones, by name: from the root to the end."""
+
+    layers: tuple[str, ...]
+    side: int = 0  # to which they bend
+
+
+def parse_limbs(content: object, names: Sequence[str | None]) -> tuple[ScriptLimb, ...]:
+    """Return limbs of layers: lists of names, or objects with "layers" and "side"."""
+    limbs = []
+    for index, entry in enumerate(as_list(content, "bones")):
+        where = f"bones[{index}]"
+        limb: JsonObject | dict[str, object] = {"layers": entry}
+        if not isinstance(entry, list):
+            limb = read_fields(entry, where, ("layers", "side"))
+        layers = tuple(as_text(each, where) for each in as_list(limb["layers"], where))
+        side = as_whole(limb.get("side", 0), f"{where}.side")
+        if len(layers) < 2 or len({*layers}) < len(layers):
+            raise LissomError(
+                _("{where} must name at least two different layers, from root to end").format(
+                    where=where
+                )
+            )
+        unknown = [each for each in layers if each not in names]
+        if unknown:
+            raise LissomError(
+                _("{where}: the script has no layer {name!r}; give it an entry first").format(
+                    where=where, name=unknown[0]
+                )
+            )
+        if side not in {-1, 0, 1}:
+            raise LissomError(
+                _("{where}.side must be -1, 0 or 1, not {side}").format(where=where, side=side)
+            )
+        limbs.append(ScriptLimb(layers=layers, side=side))
+    ends = Counter(limb.layers[-1] for limb in limbs)
+    for name, count in ends.items():
+        if count > 1:
+            raise LissomError(
+                _("two rows of bones end at {name!r}; leave one out").format(name=name)
+            )
+    return tuple(limbs)
+
+
 def parse_attachments(content: object, where: str) -> tuple[ScriptAttachment, ...]:
     """Return the attachments of a layer: one object or a list."""
     if not isinstance(content, list):

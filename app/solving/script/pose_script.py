@@ -29,10 +29,12 @@ from app.solving.script.fields import (
 from app.solving.script.keys import PoseKey, check_limbs, parse_key
 from app.solving.script.layers import (
     ScriptAttachment,
+    ScriptLimb,
     ScriptSwitchGroup,
     check_distinct_layers,
     parse_attachments,
     parse_canvas,
+    parse_limbs,
     parse_switch_groups,
 )
 from app.solving.script.material import StiffRegion, parse_bones, parse_material
@@ -61,7 +63,7 @@ MOVING_FIELDS = (
     *("movement", "opacity", "channels"),
 )
 OWN_FIELDS = ("anchor", "handles", "bones", *MOVING_FIELDS, "stiff")
-STAGE_FIELDS = ("layers", "choices")
+STAGE_FIELDS = ("layers", "choices", "bones")
 LAYER_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
@@ -124,6 +126,7 @@ class PoseScript:
     fps: float
     loop: bool
     choices: tuple[ScriptSwitchGroup, ...] = ()
+    limbs: tuple[ScriptLimb, ...] = ()
     camera: tuple[Key[Camera], ...] = ()
     canvas: tuple[int, int] | None = None  # None takes the drawing's size
     sounds: tuple[ScriptSound, ...] = ()
@@ -180,6 +183,7 @@ def parse_pose_script(content: object) -> PoseScript:
         fps=as_number(script.get("fps", 24.0), "fps"),
         loop=loop,
         choices=parse_switch_groups(script, switched),
+        limbs=parse_limbs(script.get("bones", []), names) if "layers" in script else (),
         camera=parse_camera(script["camera"]) if script.get("camera") is not None else (),
         canvas=parse_canvas(script["canvas"]) if script.get("canvas") is not None else None,
         sounds=parse_sounds(script.get("sounds", [])),

@@ -78,7 +78,7 @@ from app.texts import N_, _, message_of
 from engine.domain import Domain
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
-SCHEMA = 4
+SCHEMA = 5
 EARLIER_BONES = N_(
     "Bones of {layers} keep their length from now on. Keys stay as they are until they are posed "
     "again, but frames between them may change."
@@ -337,10 +337,12 @@ ATTACHMENT = record(
     Field("parent_point", POINT, legacy_name="at"),
     Field("inherits_rotation", FLAG, legacy_name="turns"),
     Field("rest_rotation", NUMBER, legacy_name="rest"),
+    Field("rest_scale", NUMBER, default=1.0),
     Field("frame", WHOLE, default=0),
     Field("offset", POINT, default=0j),
     Field("keep_world_transform", FLAG, default=False, legacy_name="keeps"),
     Field("kept_since", optional(WHOLE), default=None, legacy_name="since"),
+    Field("applies_transform", FLAG, default=True),
     Field("blends_to_next", FLAG, default=False, legacy_name="leads"),
 )
 GROUP = record(
@@ -425,6 +427,8 @@ LAYER = record(
     ),
     Field("handovers", list_of(ATTACHMENT), lambda each: each.attachments[1:], default=()),
     Field("origin", optional(ORIGIN), default=None),
+    Field("ik_parents", optional(WHOLE), default=None),
+    Field("pole_side", WHOLE, default=0),
 )
 IMPORT_LOG = nested_record(
     ImportLog,

@@ -29,6 +29,9 @@ def update_schema(content: JsonObject) -> None:
             layer |= {"library": [], "mirror": None}
     if schema < 4:
         _collect_channels(content)
+    if schema < 5:
+        for layer in _objects(content, "figures" if "figures" in content else "layers"):
+            _ignore_transform(layer)
 
 
 def _collect_channels(content: JsonObject) -> None:
@@ -42,6 +45,21 @@ def _collect_channels(content: JsonObject) -> None:
         for switch in _objects(content, name):
             keys = switch.pop("turns") if "turns" in switch else switch["keys"]
             switch["keys"] = _records(keys, f"{switch.where}.keys", "layer")
+
+
+def _ignore_transform(layer: JsonObject) -> None:
+    """Keep the transform of a layer without an effect at its joints, as it was up to schema 4."""
+    kinds = [
+        each.get("kind")
+        for each in as_list(layer.get("channels", []), "channels")
+        if isinstance(each, dict)
+    ]
+    if "transform" not in kinds:
+        return
+    joints = [layer.get("attachment"), *as_list(layer.get("handovers", []), "handovers")]
+    for joint in joints:
+        if isinstance(joint, dict):
+            joint["applies_transform"] = False
 
 
 def _add_channels(layer: JsonObject, *, is_loop: bool) -> None:

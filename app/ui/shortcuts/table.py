@@ -8,7 +8,7 @@ from app.editor.actions.posing.motion_presets import apply_motion, joint_placeme
 from app.editor.actions.project_files import export_settings, exporting, files, recovery, saving
 from app.editor.actions.timing import channel_keys, cycles, keys, sounds, timeline_drag, tracks
 from app.editor.actions.tracking import recording
-from app.editor.layering import layer_list, reloading
+from app.editor.layering import layer_list, layer_posing, reloading
 from app.editor.poses import copying, library, pasting, pasting_targets
 from app.editor.tools import move_tool
 from app.texts import N_
@@ -48,6 +48,11 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
             stiffness_editing.DRAW_BONES,
             stiffness_editing.add_bone_between_selected,
             limb_editing.flip_selected_joints,
+        ),
+        (
+            layer_posing.flip_layer_limb,
+            layer_posing.plant_layer,
+            layer_posing.release_layer,
         ),
         (handle_editing.group_handles, handle_editing.ungroup_handles),
         (handles.mirror_handles, handle_editing.select_mirrored),

@@ -7,7 +7,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.deform.model.energy import symmetric_dirichlet
-from engine.geometry import RigidMotion
+from engine.geometry import Similarity
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,7 +59,7 @@ class Evaluation:
             shaft_positions=factor * self.shaft_positions,
         )
 
-    def moved(self, motion: RigidMotion) -> "Evaluation":
+    def moved(self, motion: Similarity) -> "Evaluation":
         """Return the evaluation of a map followed by a rigid motion."""
         return Evaluation(
             f=motion.factor * self.f,

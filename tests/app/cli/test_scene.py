@@ -1,6 +1,7 @@
 """A drawing on layers, from its script to frames, as a person does it in a shell."""
 
 import json
+import math
 import re
 from dataclasses import replace
 
@@ -11,7 +12,7 @@ from messages import says
 from PIL import Image, ImageDraw
 
 from app.cli.main import main
-from app.document import DEPTH, Meshing, is_visible
+from app.document import DEPTH, IK_TARGET, IkTarget, Meshing, is_visible
 from app.document.model import PARENT_CIRCLE
 from app.errors import LissomError
 from app.motion import ParentTransforms
@@ -660,16 +661,41 @@ def test_a_camera_a_fade_an_order_and_a_still_layer_that_moves_are_exported(fold
     assert "does not animate Draw order of 'body', Opacity of 'arm', the camera" in notice
 
 
-def test_movement_is_reported_as_unseen_when_a_parent_carries(drawing):
-    moved = {"keys": [{"frame": 0}, {"frame": 8, "shift": [5, 0]}]}
-    body, arm, _ = SCRIPT["layers"]
-    for layers, is_reported in (
-        ([{**body, "movement": moved}, arm], False),
-        ([body, {**arm, "movement": moved}], True),
-    ):
-        _, notices = pose_document(drawing, parse_pose_script({**SCRIPT, "layers": layers}), str)
-        notice = " ".join(notices)
-        assert ("arm is attached to body, so its own movement" in notice) == is_reported
+LIMB = {
+    "schema": 1,
+    "bones": [{"layers": ["body", "arm"], "side": 1}],
+    "layers": [
+        SCRIPT["layers"][0],
+        {
+            **SCRIPT["layers"][1],
+            "channels": {"ik_target": [{"frame": 0, "place": [60, 60], "turn": 90, "mix": 1}]},
+        },
+    ],
+}
+
+
+def test_script_names_layers_that_bend_as_a_limb(drawing):
+    document, notices = pose_document(drawing, parse_pose_script(LIMB), str)
+    arm = next(layer for layer in document.layers if layer.name == "arm")
+    assert (arm.ik_parents, arm.pole_side) == (1, 1)
+    (key,) = arm.keys_of(IK_TARGET)
+    assert key.value == IkTarget(60 + 60j, math.pi / 2)
+    assert any("px from its IK target, beyond the reach of its bones" in each for each in notices)
+
+
+@pytest.mark.parametrize(
+    ("bones", "message"),
+    [
+        ([["arm", "body"]], "'body' is not attached to 'arm'"),
+        ([["arm"]], "at least two different layers"),
+        ([["body", "leg"]], "the script has no layer 'leg'"),
+        ([["body", "arm"], ["body", "arm"]], "two rows of bones end at 'arm'"),
+        ([{"layers": ["body", "arm"], "side": 3}], "must be -1, 0 or 1, not 3"),
+    ],
+)
+def test_wrong_limbs_of_layers_are_refused_by_name(drawing, bones, message):
+    with pytest.raises(LissomError, match=message):
+        pose_document(drawing, parse_pose_script({**LIMB, "bones": bones}), str)
 
 
 def test_what_fades_in_is_seen_in_a_model(folder):

@@ -14,6 +14,7 @@ from app.document import (
     Transform,
     clip_of,
     layer_commands as layers,
+    layer_value_at,
     transform_at,
 )
 from app.motion import Animation, Evaluator, ParentTransforms
@@ -54,17 +55,66 @@ def test_a_layer_is_as_distorted_and_certified_as_without():
     assert_allclose(frame.scene_positions, motion.apply(own), rtol=0, atol=1e-9)
 
 
-def test_layer_is_not_moved_by_itself_while_attached():
-    moved, still = ParentTransforms(moving(chain(), 1)), ParentTransforms(chain())
+def without_own_transform(document, identity):
+    """Return the document as one of schema 4: attachments ignore the layer's own transform."""
+    layer = document.layer(identity)
+    joints = (replace(joint, applies_transform=False) for joint in layer.attachments)
+    return document.with_layer(replace(layer, attachments=tuple(joints)))
+
+
+@pytest.mark.parametrize("frame", [0, 9.5, 20, 33.0])
+def test_attached_layer_moves_about_its_joint_by_its_own_transform(frame):
+    scaled = (TRANSFORM.key(0, Transform()), TRANSFORM.key(20, Transform(4j, -1.2, 0.6)))
+    document = moving(chain(), 1, scaled)
+    moved, still = ParentTransforms(document), ParentTransforms(chain())
+    own = layer_value_at(document, document.layer(1), TRANSFORM, frame)
+    joint = Animation(clip_of(document, 1), points=np.array([document.layer(1).anchor]))
+    about = own.about(complex(joint.positions(frame)[0]))
+    assert_allclose(
+        moved.placement(1, frame), still.placement(1, frame).compose(about), rtol=0, atol=1e-9
+    )
+    # Children stay on their joint, and turn and scale with it.
+    point = document.layer(2).attachments[0].parent_point
+    parent = Animation(clip_of(document, 1), points=np.array([point])).positions(frame)
+    child = Animation(clip_of(document, 2), points=np.array([document.layer(2).anchor]))
+    at = moved.placement(2, frame).apply(child.positions(frame))
+    assert_allclose(at, moved.placement(1, frame).apply(parent), rtol=0, atol=1e-9)
+    ratio = moved.placement(2, frame).factor / still.placement(2, frame).factor
+    assert_allclose(ratio, own.factor, rtol=0, atol=1e-9)
+
+
+def test_layer_of_an_earlier_schema_is_not_moved_by_itself_while_attached():
+    document = without_own_transform(moving(chain(), 1), 1)
+    moved, still = ParentTransforms(document), ParentTransforms(chain())
     for frame in (0, 9.5):
         assert moved.placement(1, frame) == still.placement(1, frame)
+
+
+def test_detached_layer_moves_about_its_joint_by_its_own_transform():
+    document = moving(chain(), 1)
+    layer = document.layer(1)
+    released = Attachment(parent=None, frame=20, keep_world_transform=True)
+    document = layers.attach_layer(1, layer.anchor, released)(document)
+    joints = ParentTransforms(document)
+    at, before = joints.placement(1, 20), joints.placement(1, 20, before=True)
+    assert_allclose(at, before, rtol=0, atol=1e-9)
+    joint = Animation(clip_of(document, 1), points=np.array([layer.anchor]))
+    kept, gone = (
+        layer_value_at(document, document.layer(1), TRANSFORM, frame).about(
+            complex(joint.positions(frame)[0])
+        )
+        for frame in (20, 30)
+    )
+    assert_allclose(
+        joints.placement(1, 30), at.compose(kept.inverse).compose(gone), rtol=0, atol=1e-9
+    )
 
 
 def test_what_is_let_go_goes_on_from_where_it_is():
     document = moving(chain(), 1)
     layer = document.layer(1)
     released = Attachment(parent=None, frame=20, keep_world_transform=True)
-    document = layers.attach_layer(1, layer.anchor, released)(document)
+    document = without_own_transform(layers.attach_layer(1, layer.anchor, released)(document), 1)
     joints = ParentTransforms(document)
     at, before = joints.placement(1, 20), joints.placement(1, 20, before=True)
     assert_allclose(at, before, rtol=0, atol=1e-9)

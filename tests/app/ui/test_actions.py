@@ -32,7 +32,12 @@ WITHOUT_PROJECT = {
     ),
     *("Keys and mouse", "Your first animation", "Report a problem…"),
 }
-DISABLED = {  # while two handles of a bar with two keys are selected
+DISABLED = {
+    *(
+        "Bend layers other way",
+        "Plant layer",
+        "Release layer",
+    ),  # while two handles of a bar with two keys are selected
     *(
         "Redo",
         "Bend other way",

@@ -3,8 +3,6 @@
 from bisect import bisect_right
 from typing import Any, Protocol, TypeVar, cast
 
-import numpy as np
-
 from app.document.channels.cycles import Cycle
 from app.document.channels.key import Key, KeyedProperty
 from app.document.channels.kind import Channel, ChannelKind
@@ -33,7 +31,7 @@ from app.document.queries.layers.clipping import clip_stacks
 from app.document.queries.layers.visibility import is_visible
 from app.document.queries.tangents import KeySequence, TangentSegment, sample_segment
 from app.document.settings import FrameRange
-from engine.geometry import IDENTITY_MOTION, RigidMotion
+from engine.geometry import IDENTITY_MOTION, Similarity
 
 V = TypeVar("V")
 
@@ -68,13 +66,10 @@ def layer_value_at(
     return interpolated_value(document, kind, layer.keys_of(kind, part), frame, layer.cycles)
 
 
-def transform_at(document: Document, layer: Layer, frame: float) -> RigidMotion:
-    """Return the rigid motion of a whole layer at a frame."""
+def transform_at(document: Document, layer: Layer, frame: float) -> Similarity:
+    """Return the motion of a layer without a parent at a frame: its transform about its pivot."""
     transform = layer_value_at(document, layer, TRANSFORM, frame)
-    if transform is None:
-        return IDENTITY_MOTION
-    factor = complex(np.exp(1j * transform.turn))
-    return RigidMotion(factor, layer.pivot + transform.shift - factor * layer.pivot)
+    return IDENTITY_MOTION if transform is None else transform.about(layer.pivot)
 
 
 def opacity_at(document: Document, layer: Layer, frame: float) -> float:

@@ -17,7 +17,7 @@ from app.document.rig.chains import Chain, find_chains
 from engine.arrays import Complexes
 from engine.deform import Armature, Hinge, Shaft
 from engine.domain.material.shafts import LimbCut, LimbShape, body_points, shaft_points
-from engine.geometry import RigidMotion
+from engine.geometry import Similarity
 from engine.maps import Boundary
 
 # κ L² of each point of the rigid part at an end.
@@ -106,7 +106,7 @@ class Limbs:
         """Return where the bones carry the handles, with the points (t,) at these positions."""
         starts = np.cumsum([0, *(len(shaft.points) for shaft in self.shafts)])
         motions = [
-            RigidMotion.fit(shaft.points, positions[start : start + len(shaft.points)])
+            Similarity.fit_rigid_motion(shaft.points, positions[start : start + len(shaft.points)])
             for shaft, start in zip(self.shafts, starts[:-1], strict=True)
         ]
         found, angles = dict[int, list[complex]](), dict[int, float]()
@@ -128,7 +128,7 @@ class Limbs:
         return Armature.place(boundary, self.shafts, self.hinges)
 
 
-def _carry(motion: RigidMotion, place: complex) -> complex:
+def _carry(motion: Similarity, place: complex) -> complex:
     return motion.factor * place + motion.shift
 
 

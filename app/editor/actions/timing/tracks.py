@@ -29,7 +29,7 @@ from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler, find_parent_motion, layer_animation
 from app.texts import _
-from engine.geometry import IDENTITY_MOTION, RigidMotion
+from engine.geometry import IDENTITY_MOTION, Similarity
 
 AROUND = 1 / 64  # frames before and after a key, between which its velocity is measured
 CONVERTING_KEYS = JobKind(_("Moving keys of a track"), _("The track's keys could not be placed"))
@@ -139,7 +139,7 @@ class _BaseValue(NamedTuple):
 
     place: complex  # in the layer's own space
     turned: complex  # of modulus 1: rotation of the shape at the handle
-    carried: RigidMotion  # motion of the layer by its parents
+    carried: Similarity  # motion of the layer by its parents
 
     def planted(self, offset: complex) -> complex:
         """Convert an offset from the pose to a place in the scene."""

@@ -23,7 +23,7 @@ from app.errors import LissomError
 from app.motion import BaseMotionFrame, reuse_corrections
 from app.rigging import fit_keys
 from app.texts import _
-from engine.geometry import RigidMotion
+from engine.geometry import Similarity
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
 # Largest distance of the fitted motion from the recorded one, in pixels of the screen like tremor:
@@ -284,7 +284,7 @@ def _values(project: Project, take: Recording) -> list[complex] | None:
     return values
 
 
-def _beside(ground: BaseMotionFrame, placement: RigidMotion, index: int, place: complex) -> complex:
+def _beside(ground: BaseMotionFrame, placement: Similarity, index: int, place: complex) -> complex:
     """Return the offset of a scene place from a handle, in the axes of the shape."""
     beside = placement.apply_inverse(place) - ground.positions[index]
     return complex(beside * ground.rotations[index].conjugate())

@@ -1,31 +1,41 @@
 """A layer's opacity, transform and draw order, each with the button that keys it."""
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, imgui
 
 from app.document import (
     DRAW_ORDER,
+    IK_TARGET,
     LAYER_KINDS,
+    MAX_SCALE,
     OPACITY,
     TRANSFORM,
     Channel,
     Document,
     DrawOrder,
+    IkTarget,
     Layer,
     Quantity,
     Transform,
+    bones_above,
     value_at,
 )
 from app.editor import Action, do
 from app.editor.actions.timing.channel_keys import set_channel_value
-from app.texts import _
+from app.editor.layering.layer_posing import (
+    apply_own_transform,
+    set_ik_parents,
+    set_transforms,
+)
+from app.texts import _, ngettext
 from app.ui.panels.key_diamond import diamond_room, draw_key_diamond
 from app.ui.style.sliders import Scale, number_field, slider
 from app.ui.style.theme import Look
 from app.ui.style.values import format_draw_order
-from app.ui.style.widgets import draw_tooltip, label, small_text
+from app.ui.style.widgets import FILL, draw_tooltip, label, small_text
 
 PERCENT = Scale(left=0, right=100)
 MOVES = {
@@ -34,6 +44,7 @@ MOVES = {
     "turn": _(
         "Turn the layer and its children counter-clockwise. A change sets a key at this frame."
     ),
+    "scale": _("Scale the layer and its children at its joint. A change sets a key at this frame."),
 }
 
 
@@ -41,36 +52,96 @@ def draw_transform_channel(
     document: Document, look: Look, layer: Layer, frame: int
 ) -> list[Action]:
     """Draw a layer's transform at a frame. A change makes a key there."""
-    if layer.has_parent and not layer.keys_of(TRANSFORM):
-        return []
     channel = Channel(TRANSFORM, layer.id)
     transform = value_at(document, channel, frame)
-    turn, shift = math.degrees(transform.turn), transform.shift
-    entered: dict[str, float] = {}
+    shift = transform.shift
     label(look, _("Transform"))
+    entered = _draw_fields(
+        {
+            "right": (shift.real, "%.1f px", MOVES["right"]),
+            "up": (shift.imag, "%.1f px", MOVES["up"]),
+            "turn": (math.degrees(transform.turn), "%.1f°", MOVES["turn"]),
+            "scale": (100 * transform.scale, "%.0f %%", MOVES["scale"]),
+        },
+        diamond_room(look),
+    )
+    actions = draw_key_diamond(document, look, channel, frame)
+    if entered is not None:
+        right, up, turn, scale = entered
+        scale = min(max(scale / 100, 1 / MAX_SCALE), MAX_SCALE)
+        value = Transform(complex(right, up), math.radians(turn), scale)
+        actions.append(do(set_transforms, {layer.id: value}, label=_("Set transform")))
+    joint = layer.attachment_key_at(frame)
+    if joint is not None and joint.parent is not None and not joint.applies_transform:
+        small_text(look, _("In this older project only the parent moves the layer."))
+        if imgui.button(_("Apply transform"), ImVec2(FILL, 0)):
+            actions.append(do(apply_own_transform, layer.id))
+    return actions
+
+
+def draw_ik_target(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
+    """Draw how many parents bend with an attached layer, and its IK target."""
+    parents = len(document.parent_chain(layer.id, frame)) - 1
+    if not parents:
+        return []
+    actions: list[Action] = []
+    bones = len(bones_above(document, layer.id, frame))
+    label(look, _("Bends"))
+    imgui.set_next_item_width(FILL)
+    if imgui.begin_combo("##ik parents", _format_bones(bones)):
+        actions += [
+            do(set_ik_parents, layer.id, count)
+            for count in range(parents + 1)
+            if imgui.selectable(_format_bones(count), count == bones)[0]
+        ]
+        imgui.end_combo()
+    draw_tooltip(_("How many parents bend when you pull the layer with the tool Move"))
+    if not bones:
+        return actions
+    channel, keys = Channel(IK_TARGET, layer.id), layer.keys_of(IK_TARGET)
+    if keys:
+        target = value_at(document, channel, frame)
+        label(look, _("IK target"))
+        entered = _draw_fields(
+            {
+                "x": (target.place.real, "%.1f px", _("Place in the scene from the left")),
+                "y": (target.place.imag, "%.1f px", _("Place in the scene from below")),
+                "target turn": (math.degrees(target.turn), "%.1f°", _("Rotation in the scene")),
+                "mix": (100 * target.mix, "%.0f %%", _("0 % follows the parents")),
+            },
+            diamond_room(look),
+        )
+        actions += draw_key_diamond(document, look, channel, frame)
+        if entered is not None:
+            x, y, turn, mix = entered
+            mix = min(max(mix / 100, 0.0), 1.0)
+            value = IkTarget(complex(x, y), math.radians(turn), mix)
+            actions.append(do(set_channel_value, channel, value))
+    return actions
+
+
+def _format_bones(count: int) -> str:
+    if not count:
+        return _("turns alone")
+    return ngettext("with {count} parent", "with {count} parents", count).format(count=count)
+
+
+def _draw_fields(
+    values: Mapping[str, tuple[float, str, str]], room: float
+) -> tuple[float, ...] | None:
+    """Draw number fields in a row, each with its format and tooltip; return them if one changed."""
     gap = imgui.get_style().item_inner_spacing.x
-    each = (imgui.get_content_region_avail().x - diamond_room(look) - 2 * gap) / 3
-    values = {
-        "right": (shift.real, "%.1f px"),
-        "up": (shift.imag, "%.1f px"),
-        "turn": (turn, "%.1f°"),
-    }
-    for index, (name, (value, text)) in enumerate(values.items()):
+    each = (imgui.get_content_region_avail().x - room - (len(values) - 1) * gap) / len(values)
+    entered, has_changed = [], False
+    for index, (name, (value, text, hint)) in enumerate(values.items()):
         if index:
             imgui.same_line(0, gap)
         imgui.set_next_item_width(each)
         found = number_field(f"moved {name}", value, text)
-        draw_tooltip(MOVES[name])
-        if found is not None:
-            entered[name] = found
-    actions = draw_key_diamond(document, look, channel, frame)
-    if entered:
-        right, up = entered.get("right", shift.real), entered.get("up", shift.imag)
-        radians = math.radians(entered.get("turn", turn))
-        actions.append(do(set_channel_value, channel, Transform(complex(right, up), radians)))
-    if layer.has_parent and layer.keys_of(TRANSFORM):
-        small_text(look, _("While the layer has a parent, only the parent moves it."))
-    return actions
+        draw_tooltip(hint)
+        has_changed |= found is not None
+        entered.append(value if found is None else found)
+    return tuple(entered) if has_changed else None
 
 
 def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:

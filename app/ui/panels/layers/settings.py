@@ -42,6 +42,7 @@ from app.editor.layering.switches import key_switch
 from app.texts import _
 from app.ui.panels.key_diamond import diamond_room, draw_key_diamond
 from app.ui.panels.layers.channels import (
+    draw_ik_target,
     draw_order_channel,
     draw_transform_channel,
     draw_value_channels,
@@ -91,6 +92,7 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     actions += _draw_visibility(project.document, look, layer, frame)
     actions += _draw_parent(project, look, layer, frame)
     actions += draw_transform_channel(project.document, look, layer, frame)
+    actions += draw_ik_target(project.document, look, layer, frame)
     actions += draw_order_channel(project.document, look, layer, frame)
     if layer.still:
         small_text(look, _("A still picture, shown as it was drawn."))

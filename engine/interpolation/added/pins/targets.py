@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats
 from engine.deform.correction.point_targets import PointTargets
-from engine.geometry import RigidMotion, fit_rigid
+from engine.geometry import Similarity, fit_rigid
 from engine.interpolation.added.pins.bones import SegmentBones
 
 # Weight of the points of bones: almost held, they make room for pinned handles.
@@ -65,7 +65,7 @@ class SegmentPins:
 
     def _handle_targets(
         self, time: float, places: Complexes, anchor: complex
-    ) -> tuple[PointTargets, RigidMotion]:
+    ) -> tuple[PointTargets, Similarity]:
         """Return the targets of the handles, and the rigid motion of all others."""
         rest = 1.0 - time
         wanted = self.ends[0] + time * time * (3.0 - 2.0 * time) * (self.ends[1] - self.ends[0])

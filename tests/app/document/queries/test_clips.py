@@ -8,9 +8,11 @@ from documents import altered, disc_document
 
 from app.document import (
     DEPTH,
+    IK_TARGET,
     LAYER_KINDS,
     SLIDER,
     TRANSFORM,
+    IkTarget,
     Slider,
     SliderPose,
     Transform,
@@ -56,6 +58,7 @@ STILL_CHANNELS = {
 }
 MOVING_CHANNELS = {
     (TRANSFORM, None): (TRANSFORM.key(4, Transform(shift=3j)),),
+    (IK_TARGET, None): (IK_TARGET.key(4, IkTarget(3j)),),
     (DEPTH, 0): (DEPTH.key(4, 0.5),),
     (SLIDER, "turn"): (SLIDER.key(4, 0.5 + 0j),),
 }

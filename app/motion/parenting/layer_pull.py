@@ -1,0 +1,164 @@
+"""Pulling a layer by a point: the layer and its parents turn at their joints."""
+
+import cmath
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from app.document import (
+    IK_TARGET,
+    TRANSFORM,
+    Document,
+    IkTarget,
+    Layer,
+    Transform,
+    bones_above,
+    layer_value_at,
+)
+from app.motion.parenting.chain import UNMOVED, KeptTransform, PivotFrameAt
+from app.motion.parenting.layer_limbs import (
+    LayerPlaces,
+    Turns,
+    bend_layers,
+    choose_side,
+    find_turns,
+    joint_places,
+    reach_target,
+)
+from engine.geometry import Similarity
+
+
+@dataclass(frozen=True, slots=True)
+class LayerPull:
+    """The state of a document from which a layer is pulled; places are in the scene."""
+
+    document: Document
+    layer: int
+    frame: float
+    hinge: PivotFrameAt
+    kept: KeptTransform
+    _turns: Turns = field(init=False)
+    _place: LayerPlaces = field(init=False)
+
+    def __post_init__(self) -> None:
+        given = (self.document, self.layer, self.frame, self.hinge, self.kept)
+        object.__setattr__(self, "_turns", find_turns(*given))
+        rest = (self.document, self.frame, self.hinge, self.kept)
+        object.__setattr__(self, "_place", joint_places(*rest))
+
+    @property
+    def bones(self) -> tuple[Layer, ...]:
+        """The parents that bend with the layer, from the root on."""
+        return bones_above(self.document, self.layer, self.frame)
+
+    @property
+    def placement(self) -> Similarity:
+        """The placement of the layer."""
+        return self._place(self.layer, self._turns)[0]
+
+    @property
+    def joint(self) -> complex:
+        """The place of the layer's joint."""
+        return self._place(self.layer, self._turns)[1]
+
+    @property
+    def target(self) -> IkTarget | None:
+        """The IK target of the layer, if it has keys."""
+        own = self.document.layer(self.layer)
+        return layer_value_at(self.document, own, IK_TARGET, self._at)
+
+    def present_target(self) -> IkTarget:
+        """Return the IK target that keeps the layer where it is."""
+        return IkTarget(self.joint, float(np.angle(self.placement.factor)))
+
+    def pulled(self, grabbed: complex, goal: complex, *, alone: bool) -> dict[int, Transform]:
+        """Return the transforms, by layer id, that bring a grabbed point to a goal.
+
+        With two bones and more, the layer keeps its rotation in the scene, and its parents bend.
+        With one bone, the parent and the layer bend. Otherwise, or `alone`, the layer turns at its
+        joint, towards the goal.
+        """
+        own, bones = self.document.layer(self.layer), self.bones
+        if alone or not bones:
+            return self.turned(_angle(grabbed - self.joint, goal - self.joint))
+        if len(bones) > 1:
+            place = self.joint + goal - grabbed
+            target = replace(self.present_target(), place=place)
+            return self._with(reach_target(target, bones, own, self._place, self._turns))
+        point = self.placement.apply_inverse(grabbed)
+        chain = (*bones, own)
+
+        def end(turns: Turns) -> complex:
+            placement = self._place(self.layer, turns)[0]
+            return placement.factor * point + placement.shift
+
+        joints = [self._place(each.id, self._turns)[1] for each in chain]
+        side = choose_side(own, bones, [*joints, grabbed])
+        found = bend_layers(
+            chain, end, lambda layer, turns: self._place(layer, turns)[1], goal, self._turns, side
+        )
+        return self._with(found)
+
+    def flipped(self) -> dict[int, Transform]:
+        """Return the transforms that bend the bones to the other side; the layer stays."""
+        own = self.document.layer(self.layer)
+        found = reach_target(
+            self.present_target(), self.bones, own, self._place, self._turns, flips=True
+        )
+        return self._with(found)
+
+    def transforms(self) -> dict[int, Transform]:
+        """Return the transforms that keep the limb where its IK targets bring it."""
+        limb = {self.layer, *(each.id for each in self.bones)}
+        found = {}
+        for layer in limb:
+            own = self._transform(layer)
+            found[layer] = replace(own, turn=own.turn + self._turns.get(layer, 0.0))
+        return found
+
+    @property
+    def side(self) -> int:
+        """The side to which the bones bend, as of `solve_chain`."""
+        layers = (*self.bones, self.document.layer(self.layer))
+        places = [self._place(each.id, self._turns)[1] for each in layers]
+        return choose_side(layers[-1], layers[:-1], places)
+
+    def turned(self, turn: float) -> dict[int, Transform]:
+        """Return the layer's transform, turned at its joint by an angle in radians."""
+        return self._with({**self._turns, self.layer: self._turns.get(self.layer, 0.0) + turn})
+
+    def scaled(self, factor: float) -> dict[int, Transform]:
+        """Return the layer's transform, scaled at its joint."""
+        own = self._transform(self.layer)
+        return {self.layer: replace(own, scale=own.scale * factor)}
+
+    def moved(self, way: complex) -> dict[int, Transform]:
+        """Return the layer's transform, moved in the scene, away from its joint."""
+        own = self._transform(self.layer)
+        # The shift is in the axes of the joint, which the layer's own transform does not turn.
+        axes = self.placement.factor / replace(own, shift=0j).factor
+        axes *= cmath.exp(-1j * self._turns.get(self.layer, 0.0))
+        return {self.layer: replace(own, shift=own.shift + way / axes)}
+
+    @property
+    def _at(self) -> float:
+        return self.document.loop_frame(self.frame)
+
+    def _transform(self, layer: int) -> Transform:
+        own = layer_value_at(self.document, self.document.layer(layer), TRANSFORM, self._at)
+        return own or UNMOVED
+
+    def _with(self, turns: Turns) -> dict[int, Transform]:
+        """Return the transforms of the layers that turn, with their rotations by `turns`."""
+        found = {}
+        for layer, turn in turns.items():
+            extra = turn - self._turns.get(layer, 0.0)
+            if extra:
+                own = self._transform(layer)
+                found[layer] = replace(own, turn=own.turn + extra)
+        return found
+
+
+def _angle(first: complex, second: complex) -> float:
+    """Return the angle from one arm to another; 0 if an arm has no length."""
+    return cmath.phase(second / first) if first and second else 0.0
