@@ -10,6 +10,7 @@ from animations import moving_document
 from chromium import PROGRAM, Page, chromium
 from documents import altered
 from PIL import Image
+from slid_poses import slid
 from sound_files import sine, sound, wav
 
 from app.document import (
@@ -122,6 +123,21 @@ def test_the_browser_shows_what_the_renderer_draws(browser, tmp_path):
     assert np.abs(premultiplied(shown(page, 0)) - premultiplied(found)).max() > 100
     gl.release()
     assert page.run("gl.getError()") == 0
+
+
+def test_sliders_move_a_page(browser, tmp_path):
+    document, out = replace(slid(-1, 1.2), frames=FrameRange(0, 10)), tmp_path / "nod.html"
+    draw = exported(document, out)
+    page, gl = opened(browser, out), create_context()
+    page.run("lissom.pause()")
+    pictures = []
+    for seconds in MOMENTS:
+        found, wanted = shown(page, seconds), draw(gl, document.fps * seconds)
+        pictures.append(premultiplied(found))
+        # But for single pixels of the edge, which is opaque.
+        assert np.abs(pictures[-1] - premultiplied(wanted)).mean() <= 2 * MEAN
+    gl.release()
+    assert np.abs(pictures[-1] - pictures[0]).mean() > 50 * MEAN
 
 
 @pytest.mark.parametrize("background", ["transparent", "#c08030"])
