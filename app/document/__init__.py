@@ -44,6 +44,7 @@ from app.document.channels.kinds import (
     TRANSFORM as TRANSFORM,
     VISIBILITY as VISIBILITY,
     VOLUME as VOLUME,
+    SwitchMember as SwitchMember,
 )
 from app.document.channels.sliders import (
     BEYOND as BEYOND,
@@ -229,7 +230,7 @@ from app.document.queries.layers.layer_tree import (
     parent_label as parent_label,
 )
 from app.document.queries.layers.switch_suggestions import (
-    subgroups_with_layers as subgroups_with_layers,
+    find_switch_members as find_switch_members,
     suggest_switch_groups as suggest_switch_groups,
 )
 from app.document.queries.layers.visibility import (

@@ -15,7 +15,7 @@ from typing import NoReturn
 
 from app.document.channels.cycles import count_repeated_changes
 from app.document.channels.key import Key
-from app.document.channels.kinds import CAMERA, LAYER_KINDS, VISIBILITY
+from app.document.channels.kinds import CAMERA, LAYER_KINDS, VISIBILITY, SwitchMember
 from app.document.channels.sounds import Sound
 from app.document.channels.values import Camera
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
@@ -47,7 +47,8 @@ class Document:
     frames: FrameRange = FrameRange(0, 48)  # every key lies in this range
     # Range of playback in the window; None plays all frames. Exports ignore the range.
     preview: FrameRange | None = None
-    switch_groups: tuple[SwitchGroup, ...] = ()  # a layer is in at most one switch group
+    # A layer or a group is a member of at most one switch group; members of a member may switch.
+    switch_groups: tuple[SwitchGroup, ...] = ()
     markers: tuple[Marker, ...] = ()  # in the order of their frames, at most one per frame
     fps: float = 24.0  # frames per second
     # Whether the animation loops: the last frame equals the first.
@@ -71,13 +72,13 @@ class Document:
     # Notices of all imports of layered drawings.
     import_log: ImportLog = EMPTY_IMPORT_LOG
     drawings: tuple[DrawingFile, ...] = ()  # files of which layers can be reloaded
-    # Layers by id, switch groups by the ids of their layers, groups by path.
+    # Layers by id, switch groups by their members, groups by path.
     _layers: Mapping[int, Layer] = field(init=False, repr=False)
-    _switch_groups: Mapping[int, SwitchGroup] = field(init=False, repr=False)
+    _switch_groups: Mapping[SwitchMember, SwitchGroup] = field(init=False, repr=False)
     _groups: Mapping[str, Group] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        chosen = {identity: each for each in self.switch_groups for identity in each.layers}
+        chosen = {member: each for each in self.switch_groups for member in each.members}
         for name, found in (
             ("_layers", {each.id: each for each in self.layers}),
             ("_switch_groups", chosen),
@@ -138,8 +139,12 @@ class Document:
         )
 
     def is_in_hidden(self, layer: Layer) -> bool:
-        """Return whether a group around the layer is hidden at all frames."""
-        return any(group.hidden for group in self.groups_around(layer.group))
+        """Return whether a group around the layer is hidden at all frames.
+
+        Groups of a switch are not: the switch decides.
+        """
+        around = self.groups_around(layer.group)
+        return any(group.hidden and group.name not in self._switch_groups for group in around)
 
     def group(self, path: str) -> Group:
         if path not in self._groups:
@@ -177,9 +182,39 @@ class Document:
                 return choice
         raise LissomError(_("There is no switch {name!r}.").format(name=name))
 
-    def switch_group_of(self, identity: int) -> SwitchGroup | None:
-        """Return the switch group of the layer with this id, if any."""
-        return self._switch_groups.get(identity)
+    def switch_group_of(self, member: SwitchMember) -> SwitchGroup | None:
+        """Return the switch group of a layer or a group, if any."""
+        return self._switch_groups.get(member)
+
+    def switches_around(self, layer: Layer) -> tuple[tuple[SwitchGroup, SwitchMember], ...]:
+        """Return the switch groups that decide about a layer, the outermost first.
+
+        Each comes with its member: a group around the layer, or the layer.
+        """
+        if not self.switch_groups:
+            return ()  # a fast path: this function is called often
+        members: tuple[SwitchMember, ...] = (*ancestor_paths(layer.group), layer.id)
+        found = ((self._switch_groups.get(member), member) for member in members)
+        return tuple((switch, member) for switch, member in found if switch is not None)
+
+    def member_layers(self, member: SwitchMember) -> tuple[Layer, ...]:
+        """Return the layers of a member of a switch group, from back to front."""
+        if not isinstance(member, str):
+            return (self.layer(member),)
+        return tuple(each for each in self.layers if member in ancestor_paths(each.group))
+
+    def member_name(self, member: SwitchMember) -> str:
+        """Return the name of a member of a switch group; of a group, without the groups around."""
+        return member.rpartition("/")[2] if isinstance(member, str) else self.layer(member).name
+
+    def moving_layers(self, switch: SwitchGroup) -> tuple[Layer, ...]:
+        """Return the layers that share the time of a switch: still layers in groups do not."""
+        return tuple(
+            layer
+            for member in switch.members
+            for layer in self.member_layers(member)
+            if not (isinstance(member, str) and layer.still)
+        )
 
     def sound(self, name: str) -> Sound:
         for sound in self.sounds:
@@ -296,7 +331,9 @@ class Document:
             for changes in (*held, layer.attachments):
                 count += count_repeated_changes([each.frame for each in changes], layer.cycles, end)
         for choice in self.switch_groups:
-            cycles = set.intersection(*({*self.layer(each).cycles} for each in choice.layers))
+            cycles = set.intersection(
+                *({*each.cycles} for each in self.moving_layers(choice) or self.layers[:1])
+            )
             count += count_repeated_changes([turn.frame for turn in choice.keys], cycles, end)
         require(
             count <= MAX_CHANGES,
@@ -365,31 +402,47 @@ class Document:
             (choice.name for choice in self.switch_groups),
             N_("Two switches have the name {value!r}; rename one of them."),
         )
-        taken: dict[int, str] = {}
+        taken: dict[SwitchMember, str] = {}
         for choice in self.switch_groups:
-            for identity in choice.layers:
-                layer = self.layer(identity)
-                require(
-                    identity not in taken,
-                    N_(
-                        "The layer {layer!r} is in two switches, {other!r} and {name!r}; remove "
-                        "it from one of them."
-                    ),
-                    layer=layer.name,
-                    other=taken.get(identity),
-                    name=choice.name,
+            for member in choice.members:
+                name = (
+                    self.group(member).name if isinstance(member, str) else self.layer(member).name
                 )
                 require(
-                    not layer.keys_of(VISIBILITY),
+                    member not in taken,
+                    N_("{layer!r} is in two switches, {other!r} and {name!r}; remove it from one."),
+                    layer=name,
+                    other=taken.get(member),
+                    name=choice.name,
+                )
+                taken[member] = choice.name
+                self._require_apart(choice, member)
+                layer = self.find_layer(member) if isinstance(member, int) else None
+                require(
+                    layer is None or not layer.keys_of(VISIBILITY),
                     N_(
                         "The layer {layer!r} has visibility keys and is in the switch {name!r}, "
                         "but a switch alone decides visibility. Delete the visibility keys, or "
                         "remove the layer from the switch."
                     ),
-                    layer=layer.name,
+                    layer=name,
                     name=choice.name,
                 )
-                taken[identity] = choice.name
+
+    def _require_apart(self, switch: SwitchGroup, member: SwitchMember) -> None:
+        """Refuse a member inside another member of the same switch group."""
+        around = member.rpartition("/")[0] if isinstance(member, str) else self.layer(member).group
+        outer = next((each for each in ancestor_paths(around) if each in switch.members), None)
+        require(
+            outer is None,
+            N_(
+                "The switch {name!r} has the group {group!r}, and also {member!r} inside it; "
+                "remove one of them."
+            ),
+            name=switch.name,
+            group=outer,
+            member=self.member_name(member),
+        )
 
     def _refuse_circle(self, circle: Sequence[Layer], frame: float) -> NoReturn:
         """Refuse a circle of layers, each with the next as parent; the last equals the first."""

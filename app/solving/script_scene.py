@@ -17,6 +17,7 @@ from app.document import (
     Document,
     Key,
     Layer,
+    SwitchMember,
     attachments_repeat,
     channels_in,
     describe_channel,
@@ -43,6 +44,14 @@ def find_layer(document: Document, name: str) -> Layer:
             )
         )
     return names[name]
+
+
+def find_member(document: Document, name: str) -> SwitchMember:
+    """Return the layer of a name, or else the group with this path, as a member of a switch."""
+    if any(group.name == name for group in document.groups):
+        is_layer = any(layer.name == name for layer in document.layers)
+        return find_layer(document, name).id if is_layer else name
+    return find_layer(document, name).id
 
 
 def with_attachments(document: Document, identity: int, part: LayerScript) -> Document:
@@ -132,14 +141,14 @@ def with_switch_groups(document: Document, script: PoseScript) -> Document:
     """Return a document with the script's switch groups, whatever is hidden in the drawing."""
     for given in script.choices:
         try:
-            identities = {name: find_layer(document, name).id for name in given.layers}
+            members = {name: find_member(document, name) for name in given.layers}
         except LissomError as error:
             raise LissomError(
                 _("switch {name!r}: {error}").format(name=given.name, error=error)
             ) from error
-        form = switch_group_commands.create_switch_group(given.name, tuple(identities.values()))
+        form = switch_group_commands.create_switch_group(given.name, tuple(members.values()))
         document = form(document)
-        keys = tuple(SWITCH.key(key.frame, identities[key.value]) for key in given.keys)
+        keys = tuple(SWITCH.key(key.frame, members[key.value]) for key in given.keys)
         (*others, made) = document.switch_groups
         document = replace(document, switch_groups=(*others, replace(made, keys=keys)))
     return document
@@ -188,7 +197,7 @@ def warn_unused_switches(document: Document) -> list[str]:
     """Return notices of switch groups whose cycle some of their layers lack."""
     notices = []
     for choice in document.switch_groups:
-        layers = [document.layer(each) for each in choice.layers]
+        layers = document.moving_layers(choice)
         cycles = dict.fromkeys(cycle for each in layers for cycle in each.cycles)
         cycle = next((each for each in cycles if is_switch_in_cycle(choice, each)), None)
         others = [each.name for each in layers if cycle not in each.cycles]

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.document import SWITCH, Cue, Key, Mouths, Sound
+from app.document import SWITCH, Cue, Key, Mouths, Sound, SwitchMember
 from app.sound.inspection import PEAKS_PER_SECOND, InspectedSound, Levels
 
 MOST_KEYS: Final = 8  # a second
@@ -38,18 +38,18 @@ class _Shown(NamedTuple):
     """A drawing, from a frame on for a number of frames."""
 
     frame: int
-    layer: int
+    layer: SwitchMember
     lasts: float
 
 
 def guess_drawings(
-    cues: Sequence[Cue], layers: Sequence[tuple[int, str]]
-) -> tuple[tuple[str, int], ...]:
+    cues: Sequence[Cue], layers: Sequence[tuple[SwitchMember, str]]
+) -> tuple[tuple[str, SwitchMember], ...]:
     """Return a drawing for the name of each cue, by the names of the layers (id, name).
 
     A cue without a likely name takes the first layer.
     """
-    by_name: dict[str, int] = {}
+    by_name: dict[str, SwitchMember] = {}
     for identity, name in layers:
         whole = name.casefold().rpartition("/")[2].strip()
         for word in (whole, whole.split()[-1] if whole else ""):
@@ -60,14 +60,14 @@ def guess_drawings(
     # In Rhubarb's alphabet, E is a shape; elsewhere it is a sound.
     likely = _LIKELY if all(len(name) == 1 for name in names) else {**_LIKELY, "e": ("eh", "c")}
 
-    def guess(cue: str) -> int:
+    def guess(cue: str) -> SwitchMember:
         words = (cue.casefold(), *likely.get(cue.casefold(), ()))
         return next((by_name[word] for word in words if word in by_name), first)
 
     return tuple((name, guess(name)) for name in names)
 
 
-def make_mouth_keys(sound: Sound, mouths: Mouths, fps: float) -> tuple[Key[int], ...]:
+def make_mouth_keys(sound: Sound, mouths: Mouths, fps: float) -> tuple[Key[SwitchMember], ...]:
     """Return the keys of the cues that are heard, at most `MOST_KEYS` a second.
 
     Where cues are closer, the longest is seen.

@@ -56,7 +56,7 @@ def crowded(kind: str, count: int) -> Document:
             )
         case "turns":
             turns = tuple(SWITCH.key(at, at % 2) for at in frames)
-            choice = SwitchGroup(name="mouth", layers=(0, 1), keys=turns)
+            choice = SwitchGroup(name="mouth", members=(0, 1), keys=turns)
             other = replace(layer, id=1, name="other")
             return replace(document, layers=(layer, other), switch_groups=(choice,))
         case "markers":

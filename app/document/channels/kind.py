@@ -30,6 +30,7 @@ class Quantity(Enum):
     ANGLE = auto()  # radians; degrees in scripts and panels
     FLAG = auto()
     LAYER = auto()  # id; name in scripts
+    MEMBER = auto()  # of a switch: id of a layer, or path of a group; name in scripts
     COLOUR = auto()  # red, green and blue, each from 0 to 1
     VALUE = auto()  # of a slider, complex: one number, or two of a pad
     ANYTHING = auto()  # JSON that the kind does not read

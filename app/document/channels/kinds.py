@@ -143,11 +143,12 @@ VISIBILITY: Final = ChannelKind[bool](
     fields=(ValueField("visible", Quantity.FLAG, default=True),),
     holds_before=True,
 )
-SWITCH: Final = ChannelKind[int](
+SwitchMember = int | str  # the id of a layer, or the path of a group
+SWITCH: Final = ChannelKind[SwitchMember](
     name="switch",
     label=N_("Switch"),
     icon="MASKS_THEATER",
-    fields=(ValueField("layer", Quantity.LAYER),),
+    fields=(ValueField("layer", Quantity.MEMBER),),
     holds_before=True,
 )
 TINT: Final = ChannelKind[tuple[float, float, float]](

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 
 from app.document.channels.key import Key
-from app.document.channels.kinds import VOLUME, require_volume
+from app.document.channels.kinds import VOLUME, SwitchMember, require_volume
 from app.document.checks import LAST_FRAME, NOTHING, Unknown, require
 from app.texts import N_
 
@@ -52,8 +52,8 @@ class Mouths:
 
     switch: str  # name
     cues: tuple[Cue, ...]
-    drawings: tuple[tuple[str, int], ...]  # names of cues, and ids of layers
-    keys: tuple[Key[int], ...] = ()  # as they were made
+    drawings: tuple[tuple[str, SwitchMember], ...]  # by the names of cues
+    keys: tuple[Key[SwitchMember], ...] = ()  # as they were made
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
 

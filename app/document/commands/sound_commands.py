@@ -6,7 +6,7 @@ from typing import Any
 
 from app.document.channels.key import BaseKey, Key
 from app.document.channels.kind import Channel
-from app.document.channels.kinds import SLIDER, SWITCH, TRACK
+from app.document.channels.kinds import SLIDER, SWITCH, TRACK, SwitchMember
 from app.document.channels.sounds import SHORTEST, Mouths, Sound, SoundFile, VolumeKeys
 from app.document.channels.tangent_mode import TangentMode
 from app.document.channels.tracks import Track, TrackKey
@@ -88,7 +88,9 @@ def replace_sound_file(document: Document, name: str, file: SoundFile) -> Docume
 
 
 @command(_("Set mouths"))
-def set_mouths(document: Document, name: str, mouths: Mouths, keys: Sequence[Key[int]]) -> Document:
+def set_mouths(
+    document: Document, name: str, mouths: Mouths, keys: Sequence[Key[SwitchMember]]
+) -> Document:
     """Put keys of mouths into a switch, in place of those that this sound made before.
 
     The first time they replace keys at the same frames. Later, a key that a person has set or

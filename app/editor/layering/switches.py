@@ -1,6 +1,6 @@
-"""Switches: groups of layers of which exactly one is visible, such as mouths."""
+"""Switches: layers and groups of which exactly one is visible, such as mouths."""
 
-from app.document import layer_commands, switch_group_commands
+from app.document import SwitchMember, layer_commands, switch_group_commands
 from app.editor.actions import editing, playback
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -8,18 +8,18 @@ from app.editor.session import Session, with_project
 
 @with_project
 def create_switch(
-    session: Session, project: Project, *identities: int, name: str = "choice"
+    session: Session, project: Project, *members: SwitchMember, name: str = "choice"
 ) -> None:
     taken = {choice.name for choice in project.document.switch_groups}
     free = layer_commands.unique_name(name, taken)
-    editing.edit_document(session, switch_group_commands.create_switch_group(free, identities))
+    editing.edit_document(session, switch_group_commands.create_switch_group(free, members))
 
 
 @with_project
-def key_switch(session: Session, project: Project, identity: int) -> None:
-    """Key a switch to a layer at the present frame."""
+def key_switch(session: Session, project: Project, member: SwitchMember) -> None:
+    """Key a switch to a layer or group at the present frame."""
     frame = playback.current_frame(session, project)
-    editing.edit_document(session, switch_group_commands.choose_at(identity, frame))
+    editing.edit_document(session, switch_group_commands.choose_at(member, frame))
 
 
 @with_project

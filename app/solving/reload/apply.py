@@ -225,7 +225,7 @@ def _switch_notices(plan: ReloadPlan) -> tuple[str, ...]:
             names := [
                 each.name
                 for each in plan.changes
-                if each.change is Change.GONE and each.layer in switch.layers
+                if each.change is Change.GONE and each.layer in switch.members
             ]
         )
     )

@@ -62,6 +62,7 @@ EARLIER: Mapping[str, ChannelKind[Any]] = {
 CODECS = {
     **IN_FILES,
     Quantity.LAYER: TEXT,
+    Quantity.MEMBER: TEXT,
     Quantity.ANGLE: Codec(degrees, lambda content, where: radians(as_number(content, where))),
 }
 KEYS = {

@@ -26,6 +26,7 @@ IN_FILES: Mapping[Quantity, Codec] = dict.fromkeys(Quantity, codecs.NUMBER) | {
     Quantity.POINT: codecs.POINT,
     Quantity.FLAG: codecs.FLAG,
     Quantity.LAYER: codecs.WHOLE,
+    Quantity.MEMBER: codecs.WHOLE_OR_TEXT,
     Quantity.VALUE: codecs.VALUE,
     Quantity.COLOUR: list_of(codecs.NUMBER),
     Quantity.ANYTHING: codecs.ANYTHING,

@@ -60,6 +60,10 @@ FLAG = Codec(verbatim, as_flag)
 WHOLE = Codec(verbatim, as_whole)
 NUMBER = Codec(verbatim, as_number)
 TEXT = Codec(verbatim, as_text)
+WHOLE_OR_TEXT = Codec(
+    verbatim,
+    lambda content, where: (as_text if isinstance(content, str) else as_whole)(content, where),
+)
 POINT = Codec(lambda point: [point.real, point.imag], as_point)
 
 VALUE = Codec(

@@ -62,6 +62,7 @@ from app.storage.project.codecs import (
     TEXT,
     VALUE,
     WHOLE,
+    WHOLE_OR_TEXT,
     Codec,
     Field,
     list_of,
@@ -436,9 +437,9 @@ IMPORT_LOG = nested_record(
     Field("notes", list_of(TEXT), legacy_name="matters"),
 )
 SWITCH_GROUP = record(
-    SwitchGroup,
+    lambda layers, **fields: SwitchGroup(members=layers, **fields),
     Field("name", TEXT),
-    Field("layers", list_of(WHOLE), legacy_name="figures"),
+    Field("layers", list_of(WHOLE_OR_TEXT), attrgetter("members"), legacy_name="figures"),
     Field("keys", list_of(key_codec(SWITCH))),
 )
 DOCUMENT = record(

@@ -10,7 +10,6 @@ from typing import Any
 from app.document import SWITCH, VOLUME, Cue, Document, Mouths, Sound, SoundFile, VolumeKeys
 from app.errors import LissomError
 from app.storage.files.reading import DAMAGED_ZIP
-from app.storage.json_values import as_text, as_whole
 from app.storage.project.archive import Archive
 from app.storage.project.channel_codecs import key_codec
 from app.storage.project.codecs import (
@@ -19,7 +18,7 @@ from app.storage.project.codecs import (
     POINT,
     TEXT,
     WHOLE,
-    Codec,
+    WHOLE_OR_TEXT,
     Field,
     list_of,
     nested_record,
@@ -32,11 +31,6 @@ from app.texts import N_
 
 def _cue(seconds: float, name: str) -> Cue:
     return Cue(seconds=seconds, name=name)
-
-
-def _read_part(content: object, where: str) -> int | str:
-    """Return the id of a handle, or the name of a slider."""
-    return as_text(content, where) if isinstance(content, str) else as_whole(content, where)
 
 
 MOUTHS = record(
@@ -54,14 +48,14 @@ MOUTHS = record(
             )
         ),
     ),
-    Field("drawings", list_of(pair(TEXT, WHOLE, N_("a name and a layer")))),
+    Field("drawings", list_of(pair(TEXT, WHOLE_OR_TEXT, N_("a name and a layer")))),
     Field("keys", list_of(key_codec(SWITCH))),
 )
 VOLUME_KEYS = record(
     VolumeKeys,
     Field("kind", TEXT),
     Field("layer", WHOLE),
-    Field("part", Codec(lambda part: part, _read_part)),
+    Field("part", WHOLE_OR_TEXT),
     Field("keys", list_of(pair(WHOLE, POINT, N_("a frame and a value")))),
     unknown=None,
 )

@@ -126,7 +126,7 @@ def empty_document():
     slider = Slider(name="turn", poses=poses)
     layer = replace(layer, anchor=CENTRE, tracks=(track,), sliders=(slider,))
     others = [replace(layer, id=each, name=f"layer {each}", tracks=()) for each in OTHERS]
-    group = SwitchGroup(name="mouths", layers=OTHERS)
+    group = SwitchGroup(name="mouths", members=OTHERS)
     frames = FrameRange(0, 80)
     return replace(document, layers=(layer, *others), switch_groups=(group,), frames=frames)
 
@@ -201,7 +201,7 @@ def content(document, channel, *, without=()):
 
 
 def visible_member(document, frame):
-    return with_repeats(document, document.switch_group("mouths")).layer_at(frame)
+    return with_repeats(document, document.switch_group("mouths")).member_at(frame)
 
 
 def name_at(document, frame):

@@ -59,7 +59,7 @@ CHANNELS = {
     "switch_groups": lambda at: {
         "switch_groups": (
             SwitchGroup(
-                name="mouth", layers=(0, 1), keys=tuple(SWITCH.key(f, f % 4 // 2) for f in at)
+                name="mouth", members=(0, 1), keys=tuple(SWITCH.key(f, f % 4 // 2) for f in at)
             ),
         )
     },

@@ -24,8 +24,9 @@ from app.document.commands.layers import (
 from app.document.layer import NO_KEY
 from app.document.layers.switch_group import SwitchGroup
 from app.document.model import NO_LAYER
+from app.document.queries.layers.layer_tree import layer_tree
 from app.document.queries.layers.switch_suggestions import (
-    subgroups_with_layers,
+    find_switch_members,
     suggest_switch_groups,
 )
 from app.document.queries.layers.visibility import is_visible
@@ -102,7 +103,7 @@ def test_a_layer_that_leaves_is_seen_when_it_was(mouths):
     document = choices.create_switch_group("mouth", (0, 1, 2))(mouths)
     document = choices.choose_at(1, 8)(document)
     left = choices.remove_from_switch_group(1)(document)
-    assert left.switch_groups[0].layers == (0, 2)
+    assert left.switch_groups[0].members == (0, 2)
     assert seen(left, (0, 8)) == [[2], [1, 2]]
     # A choice of one is none, and what remains is seen as before.
     alone = choices.remove_from_switch_group(0)(left)
@@ -116,7 +117,7 @@ def test_a_layer_that_leaves_is_seen_when_it_was(mouths):
 def test_copies_take_turns_with_what_they_were_copied_from(mouths):
     document = choices.create_switch_group("mouth", (0, 1))(mouths)
     document = layer_commands.duplicate_layer(1)(document)
-    assert document.switch_groups[0].layers == (0, 1, 3)
+    assert document.switch_groups[0].members == (0, 1, 3)
     assert all(len(now) == 2 for now in seen(document))  # with the layer that is in no choice
 
 
@@ -135,7 +136,7 @@ def test_time_that_is_scaled_takes_turns_along(mouths):
             "'ah' is in two switches, 'mouth' and 'eyes'",
         ),
         (choices.create_switch_group("mouth", (2, 3)), says(NO_LAYER, identity=3)),
-        (choices.create_switch_group("mouth", (2, 2)), "lists the layer 2 twice"),
+        (choices.create_switch_group("mouth", (2, 2)), "lists 2 twice"),
         (choices.create_switch_group(" ", (2, 1)), "needs a name"),
         (choices.create_switch_group("eyes", (2,)), "at least two layers"),
         (
@@ -155,9 +156,9 @@ def test_what_cannot_be_chosen_is_refused(mouths, make, words):
 
 def test_turns_are_in_order_and_of_the_choice():
     with pytest.raises(LissomError, match="at frames 8 and 4 are out of order"):
-        SwitchGroup(name="mouth", layers=(0, 1), keys=(SWITCH.key(8, 0), SWITCH.key(4, 1)))
+        SwitchGroup(name="mouth", members=(0, 1), keys=(SWITCH.key(8, 0), SWITCH.key(4, 1)))
     with pytest.raises(LissomError, match="At frame 8 the switch 'mouth' shows a layer"):
-        SwitchGroup(name="mouth", layers=(0, 1), keys=(SWITCH.key(8, 2),))
+        SwitchGroup(name="mouth", members=(0, 1), keys=(SWITCH.key(8, 2),))
 
 
 def test_one_layer_of_a_switch_is_visible_after_any_commands():
@@ -171,8 +172,8 @@ def test_one_layer_of_a_switch_is_visible_after_any_commands():
         formed += bool(document.switch_groups)
         for choice in document.switch_groups:
             for frame in (0, 10, 25.5, 48):
-                now = [i for i in choice.layers if is_visible(document, document.layer(i), frame)]
-                assert now == [choice.layer_at(frame)]
+                now = [i for i in choice.members if is_visible(document, document.layer(i), frame)]
+                assert now == [choice.member_at(frame)]
     assert formed > 50
 
 
@@ -245,14 +246,100 @@ def test_layers_named_as_in_a_group_are_offered_as_a_choice(mouths, names, hidde
     assert suggest_switch_groups(painted) == ()
 
 
-def test_a_group_of_several_layers_takes_no_turns_as_a_whole(mouths):
-    document = groups.group_layers((0,), "face/mouth")(mouths)
-    document = groups.group_layers((1, 2), "face/mouth/laugh")(document)
-    assert subgroups_with_layers(document, "face/mouth") == ("laugh",)
-    assert subgroups_with_layers(document, "face") == ("mouth",)
-    assert subgroups_with_layers(document, "face/mouth/laugh") == ()
-    single = groups.group_layers((2,), "face/mouth")(document)
-    assert subgroups_with_layers(single, "face/mouth") == ()
+@pytest.fixture
+def moods(mouths):
+    """A mouth of two groups: laughing with two layers that switch, and a sad layer with teeth."""
+    document = layer_commands.duplicate_layer(0)(mouths)
+    document = groups.group_layers((0, 1), "mouth/laugh")(document)
+    document = groups.group_layers((2, 3), "mouth/sad")(document)
+    document = layer_commands.set_hidden(1, hidden=False)(document)
+    document = choices.create_switch_group("laugh", (0, 1))(document)
+    document = choices.create_switch_group("mouth", ("mouth/laugh", "mouth/sad"))(document)
+    document = choices.choose_at("mouth/laugh", 0)(document)
+    return choices.choose_at(0, 0)(document)
+
+
+def shown(document, frame):
+    return {each.id for each in document.layers if is_visible(document, each, frame)}
+
+
+def test_a_group_switches_as_one_and_its_layers_keep_their_own_time(moods):
+    document = choices.choose_at("mouth/sad", 10)(moods)
+    document = choices.choose_at(1, 4)(document)
+    document = layer_commands.key_visibility(3, 16, visible=False)(document)
+    document = choices.choose_at("mouth/laugh", 20)(document)
+    assert [shown(document, frame) for frame in (0, 4, 10, 16, 20)] == [
+        {0}, {1}, {2, 3}, {2}, {1}
+    ]  # fmt: skip
+    assert {each.id for each in document.exported_layers} == {0, 1, 2, 3}
+    # A hidden group is shown when its switch chooses it.
+    hidden = groups.set_group_hidden("mouth/sad", hidden=True)(document)
+    assert shown(hidden, 10) == {2, 3}
+
+
+def test_switches_of_groups_follow_renamed_moved_dissolved_and_deleted_groups(moods):
+    document = choices.choose_at("mouth/sad", 10)(moods)
+    renamed = groups.rename_group("mouth", "lips")(document)
+    switch = renamed.switch_group("mouth")
+    assert switch.members == ("lips/laugh", "lips/sad")
+    assert [key.value for key in switch.keys] == ["lips/laugh", "lips/sad"]
+    assert shown(renamed, 12) == {2, 3}
+    # Whoever leaves the switch keeps its visibility, but for layers that still switch.
+    free = choices.remove_from_switch_group("mouth/sad")(document)
+    assert [each.name for each in free.switch_groups] == ["laugh"]
+    assert shown(free, 12) == {0, 2, 3}
+    assert shown(free, 2) == {0}
+    dissolved = groups.ungroup_layers("mouth/sad")(document)
+    assert [each.name for each in dissolved.switch_groups] == ["laugh"]
+    gone = layer_commands.remove_layer(3)(layer_commands.remove_layer(2)(document))
+    assert [each.name for each in gone.switch_groups] == ["laugh"]
+    assert shown(gone, 12) == {0}
+
+
+def test_a_switch_of_groups_repeats_with_the_cycle_of_their_moving_layers(moods):
+    cycle = Cycle(first=0, last=12)
+    document = choices.choose_at("mouth/sad", 6)(moods)
+    for identity in (0, 1, 2, 3):
+        document = document.with_layer(replace(document.layer(identity), cycles=(cycle,)))
+    assert [shown(document, frame) for frame in (2, 8, 14, 20)] == [{0}, {2, 3}, {0}, {2, 3}]
+    # A still layer in a group needs no cycle of its own; a moving one does.
+    still = document.with_layer(replace(document.layer(3), cycles=(), still=True))
+    assert shown(still, 14) == {0}
+    other = document.with_layer(replace(document.layer(3), cycles=()))
+    assert shown(other, 14) == {2, 3}
+    baked = cycle_commands.bake_cycle(2, 0, 48)(document)
+    assert [shown(baked, frame) for frame in (2, 8, 14, 20)] == [{0}, {2, 3}, {0}, {2, 3}]
+
+
+def test_members_of_a_switch_are_neither_nested_nor_in_two_switches(moods):
+    with pytest.raises(LissomError, match="and also"):
+        choices.create_switch_group("both", ("mouth", 2))(moods)
+    with pytest.raises(LissomError, match="in two switches"):
+        choices.create_switch_group("again", ("mouth/sad", 0))(moods)
+    with pytest.raises(LissomError, match="no group"):
+        choices.create_switch_group("other", ("nose", "ear"))(moods)
+
+
+def test_subgroups_are_offered_as_members_and_chosen_layers_stand_for_whole_groups(moods):
+    bare = replace(moods, switch_groups=())
+    assert suggest_switch_groups(bare) == (("mouth", ("mouth/laugh", "mouth/sad")),)
+    assert suggest_switch_groups(moods) == ()
+    assert find_switch_members(bare, (0, 1, 2, 3)) == ("mouth/laugh", "mouth/sad")
+    assert set(find_switch_members(bare, (2, 3))) == {2, 3}
+    assert find_switch_members(bare, (0, 2, 3)) == (0, "mouth/sad")
+
+
+def test_the_tree_lists_groups_of_a_switch_with_their_layers(moods):
+    rows = layer_tree(moods, toggled={"choice mouth", "choice laugh"})
+    assert [(row.name, row.depth, row.member) for row in rows] == [
+        ("mouth", 0, "mouth"),
+        ("mouth", 1, None),
+        ("sad", 2, "mouth/sad"),
+        *[(moods.layer(each).name, 3, each) for each in rows[2].layers],
+        ("laugh", 2, "mouth/laugh"),
+        ("laugh", 3, None),
+        *[(moods.layer(each).name, 4, each) for each in rows[-3].layers],
+    ]
 
 
 def turning(document, *, cycle, turns, of=(0, 1, 2)):

@@ -91,7 +91,7 @@ def rigged(tmp_path_factory):
     joint = Attachment(parent=by_name(document, "body").id, parent_point=98 + 112j)
     document = layer_commands.attach_layer(leg.id, hip, joint)(document)
     mouths = tuple(by_name(document, name).id for name in ("shut", "open"))
-    return replace(document, switch_groups=(SwitchGroup(name="mouth", layers=mouths),))
+    return replace(document, switch_groups=(SwitchGroup(name="mouth", members=mouths),))
 
 
 def by_name(document, name):

@@ -134,7 +134,7 @@ def switched() -> Document:
 
 def test_again_replaces_only_its_own_keys():
     document, switch = switched(), Channel(SWITCH, part="mouth")
-    first, second, third = document.switch_groups[0].layers
+    first, second, third = document.switch_groups[0].members
     own = mouths(CUES, X=first, A=second, D=third)
     keys = make_mouth_keys(document.sounds[0], own, 24.0)
     document = sound_commands.set_mouths("talk", own, keys)(document)

@@ -96,7 +96,7 @@ def document():
     turns = ((0, AH), (EARLY, OH), (LATE, AH))
     mouths = SwitchGroup(
         name="mouths",
-        layers=(AH, OH),
+        members=(AH, OH),
         keys=tuple(SWITCH.key(frame, layer) for frame, layer in turns),
     )
     return replace(

@@ -341,7 +341,7 @@ def test_wrong_cues_change_nothing(window, mouthed, tmp_path):
 
 
 def test_switch_opens_with_the_volume(window, mouthed):
-    closed = mouthed.document.switch_groups[0].layers[0]
+    closed = mouthed.document.switch_groups[0].members[0]
     window.act(editing.edit_document, switch_group_commands.choose_at(closed, 0))
     window.act(viewing.show_tab, "Sound")
     window.frames(3)

@@ -135,8 +135,8 @@ def test_switch_is_created_by_one_click(window, scene, ids, use):
 
     use(choose_create_switch)
     (switch_group,) = scene.document.switch_groups
-    assert set(switch_group.layers) == {ids["ah"], ids["oh"]}
-    first = scene.document.layer(switch_group.layer_at(0)).name
+    assert set(switch_group.members) == {ids["ah"], ids["oh"]}
+    first = scene.document.layer(switch_group.member_at(0)).name
     other = ({"ah", "oh"} - {first}).pop()
     assert {"ah", "oh"} & seen(scene, 0) == {first}
     window.act(playback.seek, 12)
@@ -173,7 +173,7 @@ def test_only_the_layer_that_is_seen_has_a_full_circle(window, scene, ids, use):
         around = picture[y - half : y + half, x - half : x + half]
         return np.count_nonzero(np.abs(around - around[0, 0]).sum(axis=2) > 90)
 
-    on = scene.document.layer(scene.document.switch_groups[0].layer_at(0)).name
+    on = scene.document.layer(scene.document.switch_groups[0].member_at(0)).name
     (off,) = {"ah", "oh"} - {on}
     assert 0 < inked(boxes[off]) < inked(boxes[on])
 
@@ -184,7 +184,7 @@ def test_where_a_turn_begins_is_dragged_in_the_timeline(window, scene, ids):
         switch_group_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]),
     )
     other = next(
-        i for i in (ids["ah"], ids["oh"]) if i != scene.document.switch_groups[0].layer_at(0)
+        i for i in (ids["ah"], ids["oh"]) if i != scene.document.switch_groups[0].member_at(0)
     )
     window.act(editing.edit_document, switch_group_commands.choose_at(other, 12))
     window.frames(3)
@@ -332,7 +332,7 @@ def test_chosen_layers_are_dropped_on_a_choice_together(window, scene, ids, use)
     window.act(select_layers, ids["hat"], ids["stick"])
     use(lambda robot: drop(robot, ids["stick"], row.key))
     (joined,) = scene.document.switch_groups
-    assert set(joined.layers) == {*switch_group.layers, ids["hat"], ids["stick"]}
+    assert set(joined.members) == {*switch_group.members, ids["hat"], ids["stick"]}
     window.act(editing.undo)
     assert scene.document is before
 
@@ -476,7 +476,7 @@ def test_group_of_mouths_is_offered_as_a_switch(window, scene, ids, use):
     window.frames(3)
     use(lambda robot: robot.item_click("**/Create switch"))
     (switch_group,) = scene.document.switch_groups
-    assert (switch_group.name, set(switch_group.layers)) == ("mouth", {ids["ah"], ids["oh"]})
+    assert (switch_group.name, set(switch_group.members)) == ("mouth", {ids["ah"], ids["oh"]})
     window.act(editing.undo)
     window.frames(3)
     use(lambda robot: robot.item_click("**/No"))
@@ -534,7 +534,7 @@ def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use
     # The layers that are by themselves are offered, and the group stays as it is.
     use(lambda robot: robot.item_click("**/Create switch"))
     (switch_group,) = scene.document.switch_groups
-    assert set(switch_group.layers) == {ids["ah"], ids["oh"]}
+    assert set(switch_group.members) == {ids["ah"], ids["oh"]}
 
 
 def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use):

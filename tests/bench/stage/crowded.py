@@ -89,7 +89,7 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
         f"{count:,} turns of a switch": replace(
             document,
             layers=tuple(copies[:2]),
-            switch_groups=(SwitchGroup(name="mouth", layers=(0, 1), keys=turns),),
+            switch_groups=(SwitchGroup(name="mouth", members=(0, 1), keys=turns),),
         ),
         f"{handles:,} handles": replace(document, layers=(posed, *document.layers[1:])),
         f"{layers:,} layers": replace(document, layers=tuple(copies)),

@@ -91,25 +91,30 @@ def bake_cycle(document: Document, identity: int, first: int, end: int) -> Docum
 
 def _with_switch_as_before(document: Document, before: Document, identity: int) -> Document:
     """Return a document whose cycles do not repeat switch keys that did not repeat before."""
-    choice = document.switch_group_of(identity)
-    cycle = None if choice is None else switch_cycle(document, choice)
-    if choice is None or cycle is None or switch_cycle(before, choice) is not None:
-        return document
-    at = cycle.last + (choice.layer_at(cycle.last) == choice.layer_at(cycle.first))
-    key = SWITCH.key(at, choice.layer_at(at))
-    stopped = replace(choice, keys=with_overwritten_keys(choice.keys, (key,)))
-    choices = tuple(stopped if each is choice else each for each in document.switch_groups)
-    return replace(document, switch_groups=choices)
+    for choice, _member in document.switches_around(document.layer(identity)):
+        cycle = switch_cycle(document, choice)
+        if cycle is None or switch_cycle(before, choice) is not None:
+            continue
+        at = cycle.last + (choice.member_at(cycle.last) == choice.member_at(cycle.first))
+        key = SWITCH.key(at, choice.member_at(at))
+        stopped = replace(choice, keys=with_overwritten_keys(choice.keys, (key,)))
+        choices = tuple(stopped if each is choice else each for each in document.switch_groups)
+        document = replace(document, switch_groups=choices)
+    return document
 
 
 def _with_baked_switch(document: Document, identity: int, cycle: Cycle, end: int) -> Document:
-    """Return a document with the repeats of a layer's switch group in a cycle as switch keys."""
-    choice = document.switch_group_of(identity)
-    if choice is None or switch_cycle(document, choice) != cycle:
-        return document
-    said = with_repeats(document, choice, max(end, cycle.last))
-    choices = tuple(said if each is choice else each for each in document.switch_groups)
-    return replace(document, switch_groups=choices)
+    """Return a document with the repeats of a layer's switch groups in a cycle as switch keys."""
+    around = [each for each, _member in document.switches_around(document.layer(identity))]
+    choices = tuple(
+        with_repeats(document, each, max(end, cycle.last))
+        if each in around and switch_cycle(document, each) == cycle
+        else each
+        for each in document.switch_groups
+    )
+    return (
+        document if choices == document.switch_groups else replace(document, switch_groups=choices)
+    )
 
 
 def _with_baked_keys(document: Document, layer: Layer, first: int, end: int) -> Layer:

@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from app.document.channels.easing import HOLD, LINEAR, Easing
 from app.document.channels.key import BaseKey, Key as ValueKey
+from app.document.channels.kinds import SwitchMember
 from app.document.channels.tangent_mode import TangentMode
 from app.document.layer import NO_KEY
 from app.errors import LissomError
@@ -203,9 +204,11 @@ def with_tangent_mode(keys: Keys[Key], frames: Collection[int], passing: Tangent
     return with_replaced_keys(keys, changed)
 
 
-def without_repetitions(keys: Iterable[ValueKey[int]]) -> tuple[ValueKey[int], ...]:
+def without_repetitions(
+    keys: Iterable[ValueKey[SwitchMember]],
+) -> tuple[ValueKey[SwitchMember], ...]:
     """Return switch keys without those that show the layer that was visible before."""
-    plain: list[ValueKey[int]] = []
+    plain: list[ValueKey[SwitchMember]] = []
     for key in keys:
         if not plain or key.value != plain[-1].value:
             plain.append(key)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.document.commands.command import command
+from app.document.commands.layers import switch_group_commands
 from app.document.commands.layers.layer_commands import (
     group_at,
     unique_name,
@@ -92,6 +93,7 @@ def ungroup_layers(document: Document, path: str) -> Document:
 
     Overlapping layers of a translucent group shine through each other afterwards.
     """
+    document = switch_group_commands.without_switch_member(document, path)
     gone, around = document.group(path), path.rpartition("/")[0]
     taken = {group.name for group in document.groups if path not in ancestor_paths(group.name)}
     to = {path: around}
@@ -192,8 +194,11 @@ def _moved(
         layer if moved(layer.group) == layer.group else replace(layer, group=moved(layer.group))
         for layer in layers
     )
+    switches = switch_group_commands.with_renamed_members(
+        document.switch_groups, {group.name: moved(group.name) for group in groups}
+    )
     groups = tuple(replace(group, name=moved(group.name)) for group in groups)
-    return replace(document, layers=layers, groups=groups)
+    return replace(document, layers=layers, groups=groups, switch_groups=switches)
 
 
 def _changed(document: Document, path: str, **changes: Any) -> Document:

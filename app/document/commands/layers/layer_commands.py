@@ -80,7 +80,9 @@ def duplicate_layer(document: Document, identity: int) -> Document:
     )
     layers = (*document.layers[: index + 1], copy, *document.layers[index + 1 :])
     choices = tuple(
-        replace(choice, layers=(*choice.layers, copy.id)) if identity in choice.layers else choice
+        replace(choice, members=(*choice.members, copy.id))
+        if identity in choice.members
+        else choice
         for choice in document.switch_groups
     )
     return replace(document, layers=layers, switch_groups=choices, size=document.canvas)
@@ -239,7 +241,12 @@ def without_empty_groups(document: Document) -> Document:
     """Return the document without groups that contain no layer."""
     filled = {path for layer in document.layers for path in ancestor_paths(layer.group)}
     groups = tuple(group for group in document.groups if group.name in filled)
-    return document if groups == document.groups else replace(document, groups=groups)
+    if groups == document.groups:
+        return document
+    for group in document.groups:
+        if group.name not in filled:
+            document = switch_group_commands.without_switch_member(document, group.name)
+    return replace(document, groups=groups)
 
 
 def group_at(others: Sequence[Layer], index: int, layer: Layer) -> str:

@@ -1,11 +1,11 @@
-"""Commands on switch groups: layers of which exactly one is visible, such as mouths."""
+"""Commands on switch groups: layers and groups of which exactly one is visible, such as mouths."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from app.document.channels.key import Key
 from app.document.channels.kind import Channel
-from app.document.channels.kinds import SWITCH, VISIBILITY
+from app.document.channels.kinds import SWITCH, VISIBILITY, SwitchMember
 from app.document.commands.command import command
 from app.document.commands.keys.retime import without_repetitions
 from app.document.commands.layers.hidden import with_layer_shown
@@ -19,39 +19,52 @@ from app.texts import _
 
 
 @command(_("Create switch"))
-def create_switch_group(document: Document, name: str, layers: Sequence[int]) -> Document:
-    """Create a switch group from layers that are in no other switch group.
+def create_switch_group(document: Document, name: str, members: Sequence[SwitchMember]) -> Document:
+    """Create a switch group from layers and groups that are in no other switch group.
 
-    Visibility keys become switch keys: at each frame the foremost visible layer is chosen. Where
-    none is visible, the previous choice stays.
+    Visibility keys of layers become switch keys: at each frame the foremost visible member is
+    chosen. Where none is visible, the previous choice stays. Layers in groups keep their keys.
     """
-    members = [document.layer(identity) for identity in layers]
-    starts = {switch.frame for layer in members for switch in layer.keys_of(VISIBILITY)}
-    front = [layer for layer in reversed(document.layers) if layer in members]
-    turns: list[Key[int]] = []
+    for member in members:
+        if isinstance(member, str):
+            document.group(member)  # raises the error of a missing group
+    inside = {member: document.member_layers(member) for member in members}
+    starts = {
+        key.frame
+        for member, layers in inside.items()
+        for layer in layers
+        if member == layer.id
+        for key in layer.keys_of(VISIBILITY)
+    }
+    order = {layer.id: place for place, layer in enumerate(document.layers)}
+    front = sorted(members, key=lambda each: -max(order[layer.id] for layer in inside[each]))
+    keys: list[Key[SwitchMember]] = []
     for frame in sorted(starts | {document.frames.first}):
-        seen = next((each.id for each in front if is_visible(document, each, frame)), None)
-        if seen is not None and (not turns or seen != turns[-1].value):
-            turns.append(SWITCH.key(frame, seen))
-    if [turn.value for turn in turns] == list(layers[:1]):
-        turns = []  # the first layer at all frames is the default
-    for layer in members:
-        document = _without_visibility_keys(document, layer.id)
-    choice = SwitchGroup(name=name.strip(), layers=tuple(layers), keys=tuple(turns))
-    return replace(document, switch_groups=(*document.switch_groups, choice))
+        seen = next(
+            (each for each in front if any(is_visible(document, of, frame) for of in inside[each])),
+            None,
+        )
+        if seen is not None and (not keys or seen != keys[-1].value):
+            keys.append(SWITCH.key(frame, seen))
+    if [key.value for key in keys] == list(members[:1]):
+        keys = []  # the first member at all frames is the default
+    for member in members:
+        document = _without_visibility_keys(document, member)
+    switch = SwitchGroup(name=name.strip(), members=tuple(members), keys=tuple(keys))
+    return replace(document, switch_groups=(*document.switch_groups, switch))
 
 
 @command(_("Set switch key"))
-def choose_at(document: Document, identity: int, frame: int) -> Document:
-    """Show a layer of its switch group from a frame on; in a cycle, the key repeats."""
-    choice = _switch_group_of(document, identity)
-    if with_repeats(document, choice).layer_at(frame) == identity:
+def choose_at(document: Document, member: SwitchMember, frame: int) -> Document:
+    """Show a member of its switch group from a frame on; in a cycle, the key repeats."""
+    choice = _switch_group_of(document, member)
+    if with_repeats(document, choice).member_at(frame) == member:
         return document
     shown = source_frame(document, Channel(SWITCH, part=choice.name), frame)
     frame = frame if shown is None else shown
-    keys = choice.keys or (SWITCH.key(min(frame, document.frames.first), choice.layers[0]),)
+    keys = choice.keys or (SWITCH.key(min(frame, document.frames.first), choice.members[0]),)
     others = [key for key in keys if key.frame != frame]
-    ordered = sorted([*others, SWITCH.key(frame, identity)], key=lambda key: key.frame)
+    ordered = sorted([*others, SWITCH.key(frame, member)], key=lambda key: key.frame)
     changed = replace(choice, keys=without_repetitions(ordered))
     return _replace_switch_group(document, choice, changed)
 
@@ -64,73 +77,107 @@ def rename_switch_group(document: Document, name: str, new: str) -> Document:
 
 
 @command(_("Add to switch"))
-def add_to_switch_group(document: Document, name: str, layers: Sequence[int]) -> Document:
-    """Add layers to a switch group as the last ones; switch keys decide their visibility."""
+def add_to_switch_group(document: Document, name: str, members: Sequence[SwitchMember]) -> Document:
+    """Add layers or groups to a switch group as the last ones; its keys decide about them."""
     choice = document.switch_group(name)
-    new = tuple(identity for identity in layers if identity not in choice.layers)
+    new = tuple(member for member in members if member not in choice.members)
     if not new:
         return document
-    for identity in new:
-        document = _without_visibility_keys(document, identity)
-    return _replace_switch_group(document, choice, replace(choice, layers=(*choice.layers, *new)))
+    for member in new:
+        document = _without_visibility_keys(document, member)
+    return _replace_switch_group(document, choice, replace(choice, members=(*choice.members, *new)))
 
 
 @command(_("Remove from switch"))
-def remove_from_switch_group(document: Document, identity: int) -> Document:
-    """Remove a layer from its switch group; it keeps its visibility as keys of its own.
+def remove_from_switch_group(document: Document, member: SwitchMember) -> Document:
+    """Remove a member from its switch group; its layers keep their visibility as own keys.
 
-    At its frames the group shows the previous layer. A group of one layer is deleted.
+    At its frames the switch shows the previous member. A switch of one member is deleted.
     """
-    choice = _switch_group_of(document, identity)
-    rest = _without(choice, identity)
-    return _replace_switch_group(
-        document, choice, rest, freed=[identity] if rest else choice.layers
-    )
+    choice = _switch_group_of(document, member)
+    rest = _without(choice, member)
+    return _replace_switch_group(document, choice, rest, freed=[member] if rest else choice.members)
 
 
 @command(_("Delete switch"))
 def delete_switch_group(document: Document, name: str) -> Document:
-    """Delete a switch group; each layer keeps its visibility as keys of its own."""
+    """Delete a switch group; its layers keep their visibility as keys of their own."""
     choice = document.switch_group(name)
-    return _replace_switch_group(document, choice, None, freed=choice.layers)
+    return _replace_switch_group(document, choice, None, freed=choice.members)
 
 
-def without_switch_member(document: Document, identity: int) -> Document:
-    """Return a document whose switch groups do not contain a layer that is about to be deleted."""
-    choice = document.switch_group_of(identity)
+def without_switch_member(document: Document, member: SwitchMember) -> Document:
+    """Return a document whose switch groups lack a layer or group that is about to be deleted."""
+    choice = document.switch_group_of(member)
     if choice is None:
         return document
-    rest = _without(choice, identity)
-    return _replace_switch_group(document, choice, rest, freed=() if rest else choice.layers)
+    rest = _without(choice, member)
+    freed = () if rest else [each for each in choice.members if each != member]
+    return _replace_switch_group(document, choice, rest, freed=freed)
 
 
-def _without_visibility_keys(document: Document, identity: int) -> Document:
-    """Return a document in which only a switch group decides the visibility of the layer."""
-    document = with_layer_shown(document, identity)
-    layer = document.layer(identity)
+def with_renamed_members(
+    switches: Sequence[SwitchGroup], to: Mapping[str, str]
+) -> tuple[SwitchGroup, ...]:
+    """Return switch groups whose member groups have new paths."""
+
+    def renamed(member: SwitchMember) -> SwitchMember:
+        return to.get(member, member) if isinstance(member, str) else member
+
+    return tuple(
+        replace(
+            switch,
+            members=tuple(map(renamed, switch.members)),
+            keys=tuple(replace(key, value=renamed(key.value)) for key in switch.keys),
+        )
+        for switch in switches
+    )
+
+
+def _without_visibility_keys(document: Document, member: SwitchMember) -> Document:
+    """Return a document in which only a switch group decides about a member."""
+    if isinstance(member, str):
+        document.group(member)
+        groups = tuple(
+            replace(each, hidden=False) if each.name == member else each for each in document.groups
+        )
+        return replace(document, groups=groups)
+    document = with_layer_shown(document, member)
+    layer = document.layer(member)
     return document.with_layer(layer.with_keys_of(VISIBILITY, ()))
 
 
-def _without(choice: SwitchGroup, identity: int) -> SwitchGroup | None:
-    layers = tuple(layer for layer in choice.layers if layer != identity)
-    turns = without_repetitions(key for key in choice.keys if key.value != identity)
-    return replace(choice, layers=layers, keys=turns) if len(layers) > 1 else None
+def _without(choice: SwitchGroup, member: SwitchMember) -> SwitchGroup | None:
+    members = tuple(each for each in choice.members if each != member)
+    keys = without_repetitions(key for key in choice.keys if key.value != member)
+    return replace(choice, members=members, keys=keys) if len(members) > 1 else None
 
 
 def _replace_switch_group(
     document: Document,
     choice: SwitchGroup,
     changed: SwitchGroup | None,
-    freed: Collection[int] = (),
+    freed: Collection[SwitchMember] = (),
 ) -> Document:
-    """Return a document with a changed or deleted switch group, and freed layers with own keys."""
+    """Return a document with a changed or deleted switch group; freed layers get own keys.
+
+    Layers that an inner switch group decides about get none.
+    """
     if changed == choice:
         return document
-    # Groups that are hidden do not count.
-    visible = replace(document, groups=tuple(replace(g, hidden=False) for g in document.groups))
+    # Groups that are hidden do not count, and neither do switch groups around.
+    visible = replace(
+        document,
+        groups=tuple(replace(group, hidden=False) for group in document.groups),
+        switch_groups=(choice,),
+    )
+    own = {layer.id for member in freed for layer in document.member_layers(member)}
+    own -= {
+        member for each in document.switch_groups if each is not choice for member in each.members
+    }
     layers = tuple(
         replace(each.with_keys_of(VISIBILITY, visibility_keys(visible, each)), hidden=False)
-        if each.id in freed
+        if each.id in own and (each.id in freed or not each.hidden)
         else each
         for each in document.layers
     )
@@ -138,9 +185,9 @@ def _replace_switch_group(
     return replace(document, layers=layers, switch_groups=tuple(filter(None, choices)))
 
 
-def _switch_group_of(document: Document, identity: int) -> SwitchGroup:
-    choice = document.switch_group_of(identity)
+def _switch_group_of(document: Document, member: SwitchMember) -> SwitchGroup:
+    choice = document.switch_group_of(member)
     if choice is None:
-        name = document.layer(identity).name
-        raise LissomError(_("The layer {name!r} is in no switch.").format(name=name))
+        name = document.member_name(member)
+        raise LissomError(_("{name!r} is in no switch.").format(name=name))
     return choice

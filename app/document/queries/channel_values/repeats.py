@@ -112,10 +112,10 @@ def held_key_at(keys: tuple[Key[V], ...], frame: float) -> Key[V] | None:
 def switch_cycle(document: Document, switch: SwitchGroup) -> Cycle | None:
     """Return the cycle with which the switch keys of a group repeat, if any.
 
-    All layers of the group have the cycle, and it contains all switch keys. A key at its end may
-    repeat the layer at its beginning.
+    All its moving layers have the cycle, and it contains all switch keys. A key at its end may
+    repeat the member at its beginning.
     """
-    shared, *others = (document.layer(each).cycles for each in switch.layers)
+    shared, *others = [each.cycles for each in document.moving_layers(switch)] or [()]
     for cycle in shared:
         if all(cycle in each for each in others) and is_switch_in_cycle(switch, cycle):
             return cycle
@@ -137,7 +137,7 @@ def with_repeats(document: Document, switch: SwitchGroup, end: int | None = None
 
 @lru_cache(maxsize=64)
 def _repeated_switch_group(switch: SwitchGroup, cycle: Cycle, end: int) -> SwitchGroup:
-    begun = SWITCH.key(cycle.first, switch.layer_at(cycle.first))
+    begun = SWITCH.key(cycle.first, switch.member_at(cycle.first))
     keys = repeated_keys(switch.keys, (cycle,), end, begun.value)
     # A repeat may begin with the layer shown at the end of the one before.
     changes = (key for before, key in pairwise(keys) if key.value != before.value)
@@ -146,7 +146,7 @@ def _repeated_switch_group(switch: SwitchGroup, cycle: Cycle, end: int) -> Switc
 
 def is_switch_in_cycle(switch: SwitchGroup, cycle: Cycle) -> bool:
     """Return whether all changes of a switch group near a cycle lie within it."""
-    again = switch.layer_at(cycle.first)
+    again = switch.member_at(cycle.first)
     return cycle.contains_changes(
         key.frame for key in switch.keys if (key.frame, key.value) != (cycle.last, again)
     )

@@ -137,7 +137,7 @@ def value_at(document: Document, channel: Channel[V], frame: float) -> V:
     if kind is CAMERA:
         found = camera_at(document, frame) or Camera(complex(*document.canvas) / 2)
     elif kind is SWITCH:
-        found = with_repeats(document, document.switch_group(str(channel.part))).layer_at(frame)
+        found = with_repeats(document, document.switch_group(str(channel.part))).member_at(frame)
     elif kind is VOLUME:
         found = volume_at(document, document.sound(str(channel.part)), frame)
     else:

@@ -1,10 +1,11 @@
 """The layers as a tree of groups and switch groups for the layer list."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
+from app.document.channels.kinds import SwitchMember
 from app.document.layer import Layer
-from app.document.layers.groups import Group, ancestor_paths
+from app.document.layers.groups import Group
 from app.document.layers.switch_group import SwitchGroup
 from app.document.model import Document
 from app.texts import _
@@ -28,6 +29,13 @@ class TreeRow:
         if self.group is not None:
             return f"group {self.group.name}"
         return "" if self.switch_group is None else f"choice {self.switch_group.name}"
+
+    @property
+    def member(self) -> SwitchMember | None:
+        """The layer or group as a member of a switch group; None for a switch group."""
+        if self.layer is not None:
+            return self.layer.id
+        return None if self.group is None else self.group.name
 
     @property
     def name(self) -> str:
@@ -75,63 +83,83 @@ def parent_label(document: Document, layer: Layer, frame: float) -> tuple[int, s
     return len(ancestors), label.format(parent=now)
 
 
+_Place = Group | SwitchGroup
+
+
 def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRow]:
-    order = _in_order(document)
-    path: tuple[str, ...] = ()
-    listed_switch: SwitchGroup | None = None
-    for index, (layer, choice, where) in enumerate(order):
-        around = ancestor_paths(where)
-        shared = sum(1 for one, other in zip(path, around, strict=False) if one == other)
-        for depth in range(shared, len(around)):
-            run = _run(order, index, around[depth])
-            key = f"group {around[depth]}"
-            yield TreeRow(
-                key=f"{key} {run[0]}",
-                depth=depth,
-                layers=run,
-                is_open=key not in toggled,
-                group=document.group(around[depth]),
-            )
-        path = around
-        if choice is not None and choice is not listed_switch:
-            yield TreeRow(
-                key=f"choice {choice.name}",
-                depth=len(around),
-                layers=tuple(each.id for each, other, _group in order if other is choice),
-                is_open=f"choice {choice.name}" in toggled,
-                switch_group=choice,
-            )
-        listed_switch = choice
-        depth = len(around) + (choice is not None)
-        yield TreeRow(key=f"{layer.id}", depth=depth, layers=(layer.id,), layer=layer)
+    places = _places(document)
+    return _rows([*reversed(document.layers)], places, 0, toggled)
 
 
-_Listed = tuple[Layer, SwitchGroup | None, str]
+def _places(document: Document) -> dict[int, tuple[_Place, ...]]:
+    """Return the groups and switch groups around each layer, the outermost first, by layer id.
 
-
-def _in_order(document: Document) -> list[_Listed]:
-    """Return the layers from front to back with their switch groups and groups.
-
-    Members of a switch group are consecutive, at the foremost member.
+    A switch group is where its foremost member is, also for members in other groups.
     """
-    order: list[_Listed] = []
-    listed: set[str] = set()
+    places: dict[int, tuple[_Place, ...]] = {}
+    known: dict[str, tuple[_Place, ...]] = {}  # around the members of a switch group
     for layer in reversed(document.layers):
-        choice = document.switch_group_of(layer.id)
-        if choice is None:
-            order.append((layer, None, layer.group))
-        elif choice.name not in listed:
-            listed.add(choice.name)
-            members = (each for each in reversed(document.layers) if each.id in choice.layers)
-            order += [(each, choice, layer.group) for each in members]
-    return order
+        around: tuple[_Place, ...] = ()
+        members: tuple[tuple[SwitchMember, Group | None], ...] = (
+            *((group.name, group) for group in document.groups_around(layer.group)),
+            (layer.id, None),
+        )
+        for member, group in members:
+            switch = document.switch_group_of(member)
+            if switch is not None:
+                around = known.setdefault(switch.name, (*around, switch))
+            if group is not None:
+                around = (*around, group)
+        places[layer.id] = around
+    return places
 
 
-def _run(order: list[_Listed], first: int, path: str) -> tuple[int, ...]:
-    """Return the ids of the run of consecutive layers of a group that begins at an index."""
-    run = []
-    for layer, _switch, where in order[first:]:
-        if path not in ancestor_paths(where):
-            break
-        run.append(layer.id)
-    return tuple(run)
+def _rows(
+    layers: list[Layer],
+    places: Mapping[int, tuple[_Place, ...]],
+    depth: int,
+    toggled: Collection[str],
+) -> Iterator[TreeRow]:
+    """Yield the rows of layers, from front to back, that share their outer `depth` places."""
+    left = layers
+    while left:
+        front = left[0]
+        if len(places[front.id]) == depth:
+            yield TreeRow(key=f"{front.id}", depth=depth, layers=(front.id,), layer=front)
+            left = left[1:]
+            continue
+        place = places[front.id][depth]
+        inside = [each for each in left if place in places[each.id][depth : depth + 1]]
+        if isinstance(place, Group):
+            # Each run of a group is a row.
+            inside = left[: _run_length(left, inside)]
+        identities = tuple(each.id for each in inside)
+        if isinstance(place, Group):
+            key = f"group {place.name}"
+            yield TreeRow(
+                key=f"{key} {front.id}",
+                depth=depth,
+                layers=identities,
+                is_open=key not in toggled,
+                group=place,
+            )
+        else:
+            key = f"choice {place.name}"
+            yield TreeRow(
+                key=key,
+                depth=depth,
+                layers=identities,
+                is_open=key in toggled,
+                switch_group=place,
+            )
+        yield from _rows(inside, places, depth + 1, toggled)
+        kept = {*identities}
+        left = [each for each in left if each.id not in kept]
+
+
+def _run_length(layers: list[Layer], inside: list[Layer]) -> int:
+    """Return the number of first layers that are inside."""
+    count = 0
+    while count < len(inside) and layers[count] is inside[count]:
+        count += 1
+    return count

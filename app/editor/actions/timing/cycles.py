@@ -116,14 +116,15 @@ def _layers_of_keys(project: Project) -> Iterator[int]:
         if channel.layer is not None:
             yield channel.layer
         elif channel.kind is SWITCH:
-            yield from project.document.switch_group(str(channel.part)).layers
+            switch = project.document.switch_group(str(channel.part))
+            yield from (layer.id for layer in project.document.moving_layers(switch))
 
 
 def _may_repeat(document: Document, identity: int) -> bool:
     """Return whether a layer can have a cycle; a still picture only without its pose channel."""
     layer = document.layer(identity)
     in_time = layer.attachments[1:] or layer.channels
-    return not layer.still or bool(in_time) or document.switch_group_of(identity) is not None
+    return not layer.still or bool(in_time) or bool(document.switches_around(layer))
 
 
 def _all_of(commands: list[Command], layers: list[int], document: Document) -> Document:

@@ -12,6 +12,7 @@ from app.document import (
     Mouths,
     Sound,
     SwitchGroup,
+    SwitchMember,
     VolumeKeys,
     sound_commands,
 )
@@ -72,16 +73,18 @@ def make_mouths(
     """Make keys of cues; drawings that were chosen for cues before stay."""
     document = project.document
     before, group = document.sound(sound).mouths, document.switch_group(switch)
-    layers = [(each, document.layer(each).name) for each in group.layers]
+    layers = [(each, document.member_name(each)) for each in group.members]
     guessed = dict(guess_drawings(cues, layers))
     if before is not None and before.switch == switch:
-        chosen = {name: layer for name, layer in before.drawings if layer in group.layers}
+        chosen = {name: layer for name, layer in before.drawings if layer in group.members}
         guessed |= {name: layer for name, layer in chosen.items() if name in guessed}
     _put(session, project, document.sound(sound), group, cues, guessed)
 
 
 @with_project
-def choose_drawing(session: Session, project: Project, sound: str, cue: str, layer: int) -> None:
+def choose_drawing(
+    session: Session, project: Project, sound: str, cue: str, layer: SwitchMember
+) -> None:
     """Show another drawing for all cues of a name."""
     document = project.document
     mouths = document.sound(sound).mouths
@@ -105,7 +108,7 @@ def _put(
     sound: Sound,
     group: SwitchGroup,
     cues: tuple[Cue, ...],
-    drawings: Mapping[str, int],
+    drawings: Mapping[str, SwitchMember],
 ) -> None:
     mouths = Mouths(switch=group.name, cues=cues, drawings=tuple(drawings.items()))
     keys = make_mouth_keys(sound, mouths, project.document.fps)
@@ -157,10 +160,10 @@ def open_with_volume(session: Session, project: Project, sound: str, target: Vol
     opened = follow_volume(inspected, fps, tools.response)
     if target.kind == "switch":
         group = document.switch_group(str(target.part))
-        cues = cues_of_volume(opened, fps, len(group.layers))
-        names = {f"{index + 1}": layer for index, layer in enumerate(group.layers)}
+        cues = cues_of_volume(opened, fps, len(group.members))
+        names = {f"{index + 1}": layer for index, layer in enumerate(group.members)}
         if own.mouths is not None and {cue.name for cue in own.mouths.cues} <= {*names}:
-            names |= {n: each for n, each in own.mouths.drawings if each in group.layers}
+            names |= {n: each for n, each in own.mouths.drawings if each in group.members}
         _put(session, project, own, group, cues, names)
         return
     closed, wide = _ends(document, target, tools.opening)

@@ -8,9 +8,10 @@ from app.document import (
     Group,
     Layer,
     SwitchGroup,
+    SwitchMember,
     TreeRow,
+    find_switch_members,
     group_commands,
-    subgroups_with_layers,
     switch_group_commands,
 )
 from app.editor import Action, Project, do
@@ -52,17 +53,6 @@ def draw_layer_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]
     return actions, asks
 
 
-def explain_unswitchable_groups(groups: Sequence[str]) -> str:
-    """Explain why groups in a group cannot be switched, and name the remedy."""
-    return ngettext(
-        "A switch shows one of several layers, but {groups} is a group. Select only layers. A "
-        "clipped layer is shown with the layer that it is clipped to.",
-        "A switch shows one of several layers, but {groups} are groups. Select only layers. A "
-        "clipped layer is shown with the layer that it is clipped to.",
-        len(groups),
-    ).format(groups=", ".join(groups))
-
-
 def _of_layer(project: Project, layer: Layer) -> list[Action]:
     identity, chosen = layer.id, project.selected_layers
     is_many = len(chosen) > 1 and identity in chosen
@@ -98,9 +88,10 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
         actions.append(do(group_layers))
     if layer.group and menu_entry(_("Ungroup layer"), icons.ICON_FA_FOLDER_MINUS):
         actions.append(do(put_layers_in_group, layer.group.rpartition("/")[0], *whom))
-    reason = _switch_disabled_reason(project, chosen if is_many else ())
+    members = find_switch_members(project.document, chosen) if is_many else ()
+    reason = _switch_disabled_reason(project, members)
     if menu_entry(_("Create switch"), icons.ICON_FA_MASKS_THEATER, reason=reason):
-        actions.append(do(create_switch, *chosen))
+        actions.append(do(create_switch, *members))
     if project.document.switch_group_of(identity) and menu_entry(
         _("Remove from switch"), icons.ICON_FA_XMARK
     ):
@@ -125,12 +116,12 @@ def _of_one_layer(identity: int) -> list[Action]:
     return [action for title, icon, action in entries if menu_entry(title, icon)]
 
 
-def _switch_disabled_reason(project: Project, layers: Sequence[int]) -> str | None:
-    """Return why layers cannot become a switch; None if they can."""
-    if len(layers) < 2:
-        return _("Select several layers first.")
-    is_taken = any(project.document.switch_group_of(each) is not None for each in layers)
-    return _("One of the layers is in a switch already.") if is_taken else None
+def _switch_disabled_reason(project: Project, members: Sequence[SwitchMember]) -> str | None:
+    """Return why layers and groups cannot become a switch; None if they can."""
+    if len(members) < 2:
+        return _("Select several layers or groups first.")
+    is_taken = any(project.document.switch_group_of(each) is not None for each in members)
+    return _("One of them is in a switch already.") if is_taken else None
 
 
 def _kind(layer: Layer) -> list[Action]:
@@ -150,10 +141,10 @@ def _kind(layer: Layer) -> list[Action]:
 def _draw_switch_items(project: Project, switch_group: SwitchGroup) -> list[Action]:
     imgui.separator()
     actions = [
-        do(key_switch, identity)
-        for identity in switch_group.layers
+        do(key_switch, member)
+        for member in switch_group.members
         if menu_entry(
-            _("Show {name}").format(name=project.document.layer(identity).name),
+            _("Show {name}").format(name=project.document.member_name(member)),
             icons.ICON_FA_CIRCLE_DOT,
         )
     ]
@@ -178,12 +169,15 @@ def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     alone = project.layer_list.solo == set(row.layers)
     if menu_entry(_("End solo") if alone else _("Solo"), SOLO):
         actions.append(do(solo_layers, *row.layers))
-    whole = subgroups_with_layers(project.document, group.name)
-    reason = _switch_disabled_reason(project, row.layers)
-    if whole:
-        reason = explain_unswitchable_groups(whole)
+    members = find_switch_members(project.document, row.layers)
+    reason = _switch_disabled_reason(project, members)
     if menu_entry(_("Create switch"), icons.ICON_FA_MASKS_THEATER, reason=reason):
-        actions.append(do(create_switch, *row.layers, name=row.name))
+        actions.append(do(create_switch, *members, name=row.name))
+    if project.document.switch_group_of(group.name) and menu_entry(
+        _("Remove from switch"), icons.ICON_FA_XMARK
+    ):
+        command = switch_group_commands.remove_from_switch_group(group.name)
+        actions.append(do(editing.edit_document, command))
     imgui.separator()
     if menu_entry(_("Ungroup"), icons.ICON_FA_FOLDER_MINUS):
         actions.append(do(editing.edit_document, group_commands.ungroup_layers(group.name)))

@@ -90,14 +90,15 @@ def draw_row_switches(look: Look, project: Project, row: TreeRow, frame: int) ->
     actions = []
     document = project.document
     layers = [document.layer(each) for each in row.layers]
-    switch_group = None if row.layer is None else document.switch_group_of(row.layer.id)
-    if switch_group is not None:
-        is_on = with_repeats(document, switch_group).layer_at(frame) == row.layers[0]
+    member = row.member
+    switch_group = None if member is None else document.switch_group_of(member)
+    if switch_group is not None and member is not None:
+        is_on = with_repeats(document, switch_group).member_at(frame) == member
         icon = icons.ICON_FA_CIRCLE_DOT if is_on else ""
-        text = _("Show from frame {frame} on, in place of the other layers of {name}")
+        text = _("Show from frame {frame} on, instead of the others in {name}")
         hint = text.format(frame=frame, name=switch_group.name)
         if icon_button(look, icon, f"turn {row.key}", hint, active=is_on):
-            actions.append(do(key_switch, row.layers[0]))
+            actions.append(do(key_switch, member))
         if not is_on:
             _ring(look)
     elif row.switch_group is not None:

@@ -14,6 +14,7 @@ from app.document import (
     Group,
     Layer,
     SwitchGroup,
+    SwitchMember,
     group_commands,
     is_visible,
     layer_commands,
@@ -146,10 +147,11 @@ def _group(look: Look, group: Group) -> list[Action]:
 
 def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw the buttons that show or hide a layer from the present frame on."""
-    switch_group = document.switch_group_of(layer.id)
-    if switch_group is not None:
-        return _draw_switch_keys(document, look, switch_group, layer, frame)
-    actions = []
+    actions: list[Action] = []
+    for switch_group, member in document.switches_around(layer):
+        actions += _draw_switch_keys(document, look, switch_group, member, frame)
+    if document.switch_group_of(layer.id) is not None:
+        return actions
     is_seen = is_visible(document, layer, frame)
     text = _("Hide from frame {frame} on") if is_seen else _("Show from frame {frame} on")
     is_put_away = layer.hidden or document.is_in_hidden(layer)
@@ -165,25 +167,27 @@ def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -
 
 
 def _draw_switch_keys(
-    document: Document, look: Look, switch_group: SwitchGroup, layer: Layer, frame: int
+    document: Document, look: Look, switch_group: SwitchGroup, member: SwitchMember, frame: int
 ) -> list[Action]:
     """Draw which layer of a switch is visible from the present frame on."""
     actions = []
     label(look, shorten_text(switch_group.name, (LABEL_WIDTH - 0.5) * look.em))
-    seen = with_repeats(document, switch_group).layer_at(frame)
-    if imgui.begin_combo("##turn", document.layer(seen).name):
+    seen = with_repeats(document, switch_group).member_at(frame)
+    if imgui.begin_combo(f"##turn {switch_group.name}", document.member_name(seen)):
         actions += [
             do(key_switch, each)
-            for each in switch_group.layers
-            if imgui.selectable(f"{document.layer(each).name}###turn {each}", each == seen)[0]
+            for each in switch_group.members
+            if imgui.selectable(f"{document.member_name(each)}###turn {each}", each == seen)[0]
         ]
         imgui.end_combo()
-    draw_tooltip(_("The layer that is visible from frame {frame} on").format(frame=frame))
+    draw_tooltip(_("What is visible from frame {frame} on").format(frame=frame))
     if text_button(
-        _("Remove from switch"), FILL, _("The layer keeps its visibility, with keys of its own")
+        _("Remove from switch") + f"###remove from {switch_group.name}",
+        FILL,
+        _("The layer keeps its visibility, with keys of its own"),
     ):
         actions.append(
-            do(editing.edit_document, switch_group_commands.remove_from_switch_group(layer.id))
+            do(editing.edit_document, switch_group_commands.remove_from_switch_group(member))
         )
     return actions
 

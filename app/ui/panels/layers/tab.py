@@ -2,14 +2,13 @@
 
 from imgui_bundle import imgui
 
-from app.document import subgroups_with_layers, suggest_switch_groups
+from app.document import suggest_switch_groups
 from app.editor import Action, Project, Session, do
 from app.editor.actions import dialog_actions, playback
 from app.editor.actions.layer_setup import resolving
 from app.editor.layering.switches import create_switch, dismiss_switch_suggestion
 from app.errors import few_notices
 from app.texts import _, message_of
-from app.ui.panels.layers.menus import explain_unswitchable_groups
 from app.ui.panels.layers.row import SmallPictures
 from app.ui.panels.layers.settings import draw_layer_settings
 from app.ui.panels.layers.tree import draw_layer_tree
@@ -72,11 +71,8 @@ def _offers(look: Look, project: Project) -> list[Action]:
             continue
         name = path.rpartition("/")[2]
         imgui.push_id(path)
-        text = _("The {count} layers of {name} look like alternatives.")
+        text = _("The {count} parts of {name} look like alternatives.")
         small_text(look, text.format(count=len(layers), name=name))
-        whole = subgroups_with_layers(project.document, path)
-        if whole:
-            small_text(look, explain_unswitchable_groups(whole))
         if imgui.button(_("Create switch")):
             actions.append(do(create_switch, *layers, name=name))
         imgui.same_line()

@@ -180,8 +180,12 @@ def _row(
             )
     start = left + (WIDE + GAP) * em
     if layer is None:
-        # The visible layer of a switch, or the number of layers in a group.
-        detail = shown.name if row.switch_group is not None else f"{len(row.layers)}"
+        # The visible member of a switch, or the number of layers in a group.
+        detail = f"{len(row.layers)}"
+        if row.switch_group is not None:
+            document = project.document
+            seen = with_repeats(document, row.switch_group).member_at(frame)
+            detail = document.member_name(seen)
     draw_row_text(look, project, row, detail, start, ImVec2(high.x, middle), is_seen=is_seen)
     imgui.set_cursor_screen_pos(after)
     return actions
@@ -203,7 +207,8 @@ def _shown(document: Document, row: TreeRow, frame: int) -> Layer:
     """Return the layer of a row's thumbnail: of a switch, its visible layer."""
     if row.switch_group is None:
         return document.layer(row.layers[0])
-    return document.layer(with_repeats(document, row.switch_group).layer_at(frame))
+    seen = with_repeats(document, row.switch_group).member_at(frame)
+    return (*reversed(document.member_layers(seen)), document.layer(row.layers[0]))[0]
 
 
 def _is_seen(project: Project, row: TreeRow, frame: int) -> bool:

@@ -104,15 +104,15 @@ def _drawings(look: Look, document: Document, sound: Sound, own: Mouths) -> list
             cues=len(own.cues), keys=len(own.keys), switch=own.switch
         ),
     )
-    layers = document.switch_group(own.switch).layers
+    layers = document.switch_group(own.switch).members
     for cue, drawing in own.drawings:
         label(look, display_name(cue))
-        layer = document.find_layer(drawing)
-        if imgui.begin_combo(f"##drawing of {cue}", "" if layer is None else layer.name):
+        name = document.member_name(drawing) if drawing in layers else ""
+        if imgui.begin_combo(f"##drawing of {cue}", name):
             actions += [
                 do(mouths.choose_drawing, sound.name, cue, each)
                 for each in layers
-                if imgui.selectable(document.layer(each).name, each == drawing)[0]
+                if imgui.selectable(document.member_name(each), each == drawing)[0]
             ]
             imgui.end_combo()
         draw_tooltip(_("The drawing that shows {cue}").format(cue=display_name(cue)))

@@ -5,7 +5,9 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 from app.document import (
     SWITCH,
     Channel,
+    Document,
     SwitchGroup,
+    SwitchMember,
     channel_commands,
     pose_channel,
     source_frame,
@@ -64,8 +66,8 @@ def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
         icon = icons.ICON_FA_FOLDER if row.switch_group is None else icons.ICON_FA_MASKS_THEATER
         text = row.name
         if row.switch_group is not None:
-            seen = with_repeats(document, row.switch_group).layer_at(frame)
-            text = f"{text}: {document.layer(seen).name}"
+            seen = with_repeats(document, row.switch_group).member_at(frame)
+            text = f"{text}: {document.member_name(seen)}"
         with push_text_size(SMALL):
             top = lane.middle - imgui.get_text_line_height() / 2
             text = shorten_text(text, high.x - left - 3.0 * em)
@@ -141,23 +143,23 @@ def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, switch: SwitchGroup
         if right <= left:
             continue
         low, high = ImVec2(left + 1, lane.top + 1), ImVec2(right, lane.bottom - 1)
-        seen = switch.layer_at(start)
+        seen = switch.member_at(start)
         bands.button(f"turn {start}", low, high, right=True)
         if imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of turn {start}")
         elif imgui.is_item_clicked():
-            actions.append(do(set_active_layer, seen))
+            actions.append(_choose_member(document, seen))
         number = switch.count_keys_until(start)
         strength = 0.34 if is_hovered_or_held() else 0.24 - 0.08 * (number % 2)
         draw_list.add_rect_filled(low, high, colour_u32(palette.accent, strength), 0.2 * em)
         with push_text_size(SMALL):
             top = lane.middle - imgui.get_text_line_height() / 2
-            text = shorten_text(document.layer(seen).name, right - left - 0.9 * em)
+            text = shorten_text(document.member_name(seen), right - left - 0.9 * em)
             draw_list.add_text(ImVec2(left + 0.45 * em, top), colour_u32(palette.text), text)
         if begin_tooltip():
             imgui.text_unformatted(
                 _("{layer} from frame {frame} on").format(
-                    layer=document.layer(seen).name, frame=start
+                    layer=document.member_name(seen), frame=start
                 )
             )
             imgui.text_disabled(_("Right-click to show another layer, drag the start to move it"))
@@ -168,6 +170,13 @@ def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, switch: SwitchGroup
         if own.count_keys_until(start) > own.count_keys_until(start - 1):
             actions += _edge(bands, lane, switch, start)
     return actions
+
+
+def _choose_member(document: Document, member: SwitchMember) -> Action:
+    """Return the action that selects a member of a switch: a layer, or the layers of a group."""
+    if isinstance(member, str):
+        return do(select_layers, *(layer.id for layer in document.member_layers(member)))
+    return do(set_active_layer, member)
 
 
 def _starts(bands: TimelineLayout, switch: SwitchGroup) -> list[int]:
@@ -184,12 +193,12 @@ def _menu(bands: TimelineLayout, switch: SwitchGroup, start: int) -> list[Action
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of turn {start}"):
         return actions
-    for identity in switch.layers:
-        name = bands.project.document.layer(identity).name
-        is_seen = switch.layer_at(start) == identity
-        if imgui.menu_item(f"{name}###show {identity}", "", is_seen)[0] and not is_seen:
+    for member in switch.members:
+        name = bands.project.document.member_name(member)
+        is_seen = switch.member_at(start) == member
+        if imgui.menu_item(f"{name}###show {member}", "", is_seen)[0] and not is_seen:
             actions.append(
-                do(editing.edit_document, switch_group_commands.choose_at(identity, start))
+                do(editing.edit_document, switch_group_commands.choose_at(member, start))
             )
     imgui.separator()
     channel = Channel(SWITCH, part=switch.name)
