@@ -142,8 +142,9 @@ frame on. With "keep" nothing jumps then, and "at" may be left out. "to": null d
 
 Layers without an entry stand still. "visible" lists the frames from which a layer is visible or
 not; it also shows layers that are hidden in DRAWING. "choices" are switches: exactly one of their
-layers is visible, from the frame on that the key names. A layer is in one switch only, and has no
-"visible" then.
+layers is visible, from the frame on that the key names. In place of a layer, a switch may have a
+group by its path ("mouth/happy"), which switches as one; its layers may have "visible" and switches
+of their own. A layer is in one switch only, and has no "visible" then.
 
 The camera and its canvas are at the top of the script:
 
@@ -200,10 +201,8 @@ A channel is set in one place: here, or by "movement", "opacity", "order", "visi
 
 A drawing that was changed in its program is reloaded with --reload NEW PROJECT. Handles, keys and
 joints stay. Layers are found by the ids in the file, by group and name, by a name that is unique,
-or by equal pixels. A table lists what is redrawn, moved, new and gone. The upper left corner of the
-canvas stays, or the place of the unchanged layers. Opacity, blend, visibility, clipping, names,
-groups and order come from the file where they changed there and not in the project. Layers that are
-gone are hidden, and keep their keys.
+or by equal pixels. A table lists what is redrawn, moved, new and gone. Settings, names, groups and
+order come from the file if they changed only there. Layers that are gone stay, hidden.
 
 Sounds are files beside the script:
 
@@ -231,13 +230,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=input_file,
         help=_("the drawing, or with --reload the project"),
     )
-    parser.add_argument(
-        "script",
-        metavar="SCRIPT.json",
-        type=input_file,
-        nargs="?",
-        help=_("handles and keys"),
-    )
+    script = _("handles and keys")
+    parser.add_argument("script", metavar="SCRIPT.json", type=input_file, nargs="?", help=script)
     add_out(parser, "PROJECT.lissom", is_required=False)
     parser.add_argument(
         "--reload",

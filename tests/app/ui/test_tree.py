@@ -516,13 +516,12 @@ def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
     assert scene.document is before
 
 
-def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use):
+def test_a_group_in_a_group_of_mouths_switches_as_one(window, scene, ids, use):
     for names, path in ((("ah", "oh", "hat", "stick"), "mouth"), (("hat", "stick"), "mouth/laugh")):
         command = group_commands.group_layers([ids[name] for name in names], path)
         window.act(editing.edit_document, command)
     window.frames(3)
     key = next(row.key for row in scene.tree if row.group and row.group.name == "mouth")
-    before = scene.document
 
     def choose_create_switch(robot):
         robot.item_click(row_of(key), 1)
@@ -530,11 +529,10 @@ def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use
         robot.key_press(int(window.Key.escape))
 
     use(choose_create_switch)
-    assert scene.document is before
-    # The layers that are by themselves are offered, and the group stays as it is.
-    use(lambda robot: robot.item_click("**/Create switch"))
     (switch_group,) = scene.document.switch_groups
-    assert set(switch_group.members) == {ids["ah"], ids["oh"]}
+    assert set(switch_group.members) == {ids["ah"], ids["oh"], "mouth/laugh"}
+    window.act(key_switch, "mouth/laugh")
+    assert scene.document.switch_group(switch_group.name).member_at(0) == "mouth/laugh"
 
 
 def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use):

@@ -80,10 +80,8 @@ def duplicate_layer(document: Document, identity: int) -> Document:
     )
     layers = (*document.layers[: index + 1], copy, *document.layers[index + 1 :])
     choices = tuple(
-        replace(choice, members=(*choice.members, copy.id))
-        if identity in choice.members
-        else choice
-        for choice in document.switch_groups
+        replace(each, members=(*each.members, copy.id)) if identity in each.members else each
+        for each in document.switch_groups
     )
     return replace(document, layers=layers, switch_groups=choices, size=document.canvas)
 
@@ -243,9 +241,8 @@ def without_empty_groups(document: Document) -> Document:
     groups = tuple(group for group in document.groups if group.name in filled)
     if groups == document.groups:
         return document
-    for group in document.groups:
-        if group.name not in filled:
-            document = switch_group_commands.without_switch_member(document, group.name)
+    for path in {group.name for group in document.groups} - filled:
+        document = switch_group_commands.without_switch_member(document, path)
     return replace(document, groups=groups)
 
 
