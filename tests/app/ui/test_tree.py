@@ -37,7 +37,7 @@ from app.editor.layering.parenting import (
     delete_parent_key,
     reparent_layer,
 )
-from app.editor.layering.switches import create_switch
+from app.editor.layering.switches import create_switch, key_switch
 
 WIDTH, HEIGHT = 240, 200
 FACES = {
