@@ -168,8 +168,7 @@ turns around its anchor, or else around the middle of its shape. Attached layers
 "opacity" is a number, or changes evenly from key to key. "order" moves the layer right in front of
 or right behind another layer from a frame on; null returns it to its place in DRAWING. A layer that
 stands still has these too, with "handles": {} and "keys": [{"frame": 0}]. Keys of the camera and of
-movements have ease and passing as those of poses. They start and end at rest, unless they have an
-ease.
+movements have ease and passing as those of poses; without an ease they start and end at rest.
 
 "bones" at the top of the script names attached layers that bend as a limb, from root to end. The
 last one then goes to the places of its channel "ik_target", and the others turn at their joints:
@@ -183,8 +182,7 @@ last one then goes to the places of its channel "ik_target", and the others turn
 "place" is where the joint of the foot is in the scene, and "turn" how far the foot is turned there,
 in degrees. Between two keys at the same place the foot stays planted. "mix" is 1 by default; with 0
 the foot follows its parents, and their own turns hold. Beyond reach the limb is straight. "side" is
-1 for joints that bend to the left of the way from root to end, and -1 to the right; by default they
-bend as drawn.
+1 for a bend to the left of the way from root to end, -1 to the right, and by default as drawn.
 
 "channels" sets any channel of a layer, with an easing and a tangent for every key:
 
