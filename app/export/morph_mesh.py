@@ -13,6 +13,7 @@ from app.document import (
     CompositeGroup,
     Document,
     Layer,
+    camera_at,
     clip_of,
     composite_layers,
     is_visible,
@@ -20,6 +21,7 @@ from app.document import (
 )
 from app.errors import LissomError
 from app.export.alpha_bleed import bleed_edges
+from app.export.node_motion import SCALE, NodeMotion, build_node_motion
 from app.export.plan import ExportPlan
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Evaluator, TriangleOrder, bounding_box
@@ -28,6 +30,7 @@ from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
 from engine.domain import ClosedCuts, find_closed_cuts
 from engine.domain.meshing.draw_order import copy_draw_order
 from engine.domain.meshing.triangulation import triangulate
+from engine.geometry import Similarity
 from engine.streaming import MorphTargets, build_morph_targets
 
 Value = TypeVar("Value")
@@ -36,6 +39,7 @@ DEFAULT_TOLERANCE: Final = 0.5  # pixels
 MOST_TARGETS: Final = 8  # glTF viewers must support only this many
 _BORDER: Final = 2  # transparent pixels around a texture: readers repeat its edge
 _CLOSE: Final = 0.5  # frames between the first samples
+OF_NODE: Final = 0.1  # share of the tolerance for the motion of the whole layer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -57,6 +61,8 @@ class MorphMesh:
         Start times, and visibility from then on.
     motion : MorphTargets
         In pixels, y up. All times are in seconds from the first frame.
+    node : NodeMotion, optional
+        The motion of the whole layer after `motion`; None if it rests.
     """
 
     name: str
@@ -66,6 +72,7 @@ class MorphMesh:
     triangle_orders: tuple[tuple[float, Integers], ...]
     visibility_changes: tuple[tuple[float, bool], ...]
     motion: MorphTargets
+    node: NodeMotion | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -97,7 +104,7 @@ def build_morph_scene(
 ) -> Generator[float, None, MorphScene]:
     """Build the meshes of every layer; yield the finished share of the work, from 0 to 1.
 
-    If the format shows a part of the plane, the meshes are in the camera's view.
+    If the format shows a part of the plane, the layers are in the camera's view.
 
     Parameters
     ----------
@@ -133,11 +140,21 @@ def build_morph_scene(
         layer, mesh = clip.layer, clip.layer.domain.mesh
         seam = find_closed_cuts(layer.domain)
         places = mesh.vertices if seam is None else seam.close_cuts(mesh.vertices)
+        allowed = DEFAULT_TOLERANCE if tolerance is None else tolerance
+        node = build_node_motion(
+            partial(_placement, moving, evaluator, plan, layer.id),
+            places,
+            layer.pivot,
+            times,
+            OF_NODE * allowed,
+        )
+        if node is not None:
+            allowed *= (1 - OF_NODE) / float(node.values[:, SCALE].max())
         steps = build_morph_targets(
-            partial(_painted, moving, evaluator, plan, seam, layer.id),
+            partial(_painted, moving, evaluator, seam, layer.id),
             places,
             times,
-            tolerance=DEFAULT_TOLERANCE if tolerance is None else tolerance,
+            tolerance=allowed,
             most=MOST_TARGETS if tolerance is None else None,
         )
         motion = yield from _share(steps, plan.span, (index, len(clips)))
@@ -158,6 +175,7 @@ def build_morph_scene(
                 ((n - first) / document.fps, seen) for n, seen in _changes(visibility)
             ),
             motion=replace(motion, times=freeze((motion.times - first) / document.fps)),
+            node=node and replace(node, times=freeze((node.times - first) / document.fps)),
         )
         found.append(shape)
     numbered = {clip.layer.id: number for number, clip in enumerate(clips)}
@@ -179,17 +197,22 @@ def _with_peak_opacity(document: Document) -> Document:
 def _painted(
     document: Document,
     evaluator: Evaluator,
-    plan: ExportPlan,
     seam: ClosedCuts | None,
     layer: int,
     frame: float,
 ) -> Complexes:
-    """Return the painted vertices of a layer: cuts closed, in the camera's view."""
-    scene = evaluator.evaluate(document, frame, only=[layer])
-    places = scene.layers[layer].scene_positions
-    places = places if seam is None else seam.close_cuts(places)
-    camera = scene.camera if EXPORT_FORMATS[plan.format].has_frame else None
-    return places if camera is None else camera.canvas_motion(document.canvas).apply(places)
+    """Return the painted vertices of a layer in its own space: cuts closed."""
+    places = evaluator.evaluate(document, frame, only=[layer]).layers[layer].positions
+    return places if seam is None else seam.close_cuts(places)
+
+
+def _placement(
+    document: Document, evaluator: Evaluator, plan: ExportPlan, layer: int, frame: float
+) -> Similarity:
+    """Return the motion of a whole layer, in the camera's view."""
+    placement = evaluator.exact_placement(document, layer, frame)
+    camera = camera_at(document, frame) if EXPORT_FORMATS[plan.format].has_frame else None
+    return placement if camera is None else camera.canvas_motion(document.canvas).compose(placement)
 
 
 def _changes(values: list[tuple[int, Value]]) -> list[tuple[int, Value]]:

@@ -164,6 +164,11 @@ class Evaluator:
             self._known[document, layer, frame] = found
         return found
 
+    def exact_placement(self, document: Document, layer: int, frame: float) -> Similarity:
+        """Return a layer's placement at a frame; what is missing is computed."""
+        self.check()
+        return self._exact_transforms(document).placement(layer, frame)
+
     def _exact_transforms(self, document: Document) -> ParentTransforms:
         if self._own is None or self._own.document is not document:
             samplers = {layer: each.store.sampler for layer, each in self.layers.items()}

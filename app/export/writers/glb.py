@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from app.errors import display_name
 from app.export.morph_mesh import MorphMesh, MorphScene
+from app.export.node_motion import NodeMotion
 from app.export.plan import ExportPlan
 from app.export.writers.png import encode_png
 from app.storage import strict_json
@@ -25,7 +26,7 @@ _UINT16, _UINT32, _FLOAT = 5123, 5125, 5126
 _VERTICES, _INDICES = 34962, 34963
 _LINEAR, _LINEAR_MIPMAPS, _CLAMP = 9729, 9987, 33071
 _MOST_UINT16: Final = 65_534  # the largest number ends strips
-_COMPONENTS: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+_COMPONENTS: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
 
 def build_glb(scene: MorphScene, plan: ExportPlan) -> bytes:
@@ -47,10 +48,13 @@ class _Asset:
         self._channels: list[dict[str, Any]] = []
         self._samplers: list[dict[str, Any]] = []
         self._plan = plan
+        self._roots: list[int] = []  # nodes of the scene
 
     def add(self, shape: MorphMesh) -> None:
         """Add a layer as a node with a mesh, a material and an animation."""
-        base, targets = shape.motion.base - self._origin, shape.motion.targets
+        motion = shape.node
+        pivot = self._origin if motion is None else motion.pivot
+        base, targets = shape.motion.base - pivot, shape.motion.targets
         weights = np.clip(shape.motion.weights, 0.0, 1.0)
         primitive: dict[str, Any] = {
             "attributes": {
@@ -68,22 +72,47 @@ class _Asset:
             mesh["weights"] = weights[0].tolist() if is_still else [0.0] * len(targets)
             names = [f"shape {number}" for number in range(1, len(targets) + 1)]
             mesh["extras"] = {"targetNames": names}
-        node = {"name": shape.name, "mesh": self._list("meshes", mesh)}
-        layer = len(self._lists.get("nodes", []))
-        if layer:
-            node["translation"] = [0.0, 0.0, _LAYER * layer]
-        number = self._list("nodes", node)
+        node: dict[str, Any] = {"name": shape.name, "mesh": self._list("meshes", mesh)}
+        height = _LAYER * len(self._roots)
+        if motion is not None:
+            node |= {name: rows[0].tolist() for name, rows in self._rows(motion, height).items()}
+        elif height:
+            node["translation"] = [0.0, 0.0, height]
+        number = root = self._list("nodes", node)
         if len(targets) and len(weights) > 1:
             values = self._numbers(weights.ravel(), "SCALAR")
             self._animate(number, "weights", shape.motion.times, (values, "LINEAR"))
-        if len(shape.visibility_changes) > 1 or not shape.visibility_changes[0][1]:
+        hides = len(shape.visibility_changes) > 1 or not shape.visibility_changes[0][1]
+        if motion is not None and len(motion.times) > 1:
+            for name, rows in self._rows(motion, height).items():
+                if np.ptp(rows, axis=0).any():
+                    values = self._numbers(rows, f"VEC{rows.shape[1]}")
+                    self._animate(number, name, motion.times, (values, "LINEAR"))
+            if hides:
+                # A node around it is hidden, since its own scale may be animated.
+                root = self._list("nodes", {"name": shape.name, "children": [number]})
+        self._roots.append(root)
+        if hides:
             moments, seen = (
                 np.array(column, dtype=np.float64)
                 for column in zip(*shape.visibility_changes, strict=True)
             )
             # Scale 0 hides a layer.
             values = self._numbers(np.repeat(seen, 3), "VEC3")
-            self._animate(number, "scale", moments, (values, "STEP"))
+            self._animate(root, "scale", moments, (values, "STEP"))
+
+    def _rows(self, motion: NodeMotion, height: float) -> dict[str, Floats]:
+        """Return translations (n, 3) in metres, rotations (n, 4) and scales (n, 3) of a layer."""
+        x, y, turn, scale = motion.values.T
+        flat, ones = np.zeros(len(x)), np.ones(len(x))
+        x, y = x - self._origin.real, y - self._origin.imag
+        return {
+            "translation": np.column_stack(
+                [x / PIXELS_PER_METRE, y / PIXELS_PER_METRE, height * ones]
+            ),
+            "rotation": np.column_stack([flat, flat, np.sin(turn / 2), np.cos(turn / 2)]),
+            "scale": np.column_stack([scale, scale, ones]),
+        }
 
     def file(self) -> bytes:
         name = display_name(self._plan.out.stem)
@@ -98,7 +127,7 @@ class _Asset:
             },
             "extensionsUsed": [_UNLIT],
             "scene": 0,
-            "scenes": [{"name": name, "nodes": list(range(len(self._lists["nodes"])))}],
+            "scenes": [{"name": name, "nodes": self._roots}],
             **self._lists,
             "samplers": [
                 {

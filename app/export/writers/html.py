@@ -73,6 +73,8 @@ def _packed(shape: MorphMesh) -> dict[str, Any]:
         motion.times,
         motion.weights,
     ]
+    if shape.node is not None:
+        numbers += [shape.node.times, shape.node.values]
     data = b"".join(part.astype("<f4").tobytes() for part in numbers)
     data += b"".join(order.astype("<u4").tobytes() for _, order in shape.triangle_orders)
     return {
@@ -81,6 +83,8 @@ def _packed(shape: MorphMesh) -> dict[str, Any]:
         "vertices": len(shape.uv),
         "targets": len(motion.targets),
         "times": len(motion.times),
+        "moments": 0 if shape.node is None else len(shape.node.times),
+        "pivot": [] if shape.node is None else [shape.node.pivot.real, shape.node.pivot.imag],
         "triangles": len(shape.triangle_orders[0][1]),
         "orders": [seconds for seconds, _ in shape.triangle_orders],
         "visibility": shape.visibility_changes,

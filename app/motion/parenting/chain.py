@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from types import MappingProxyType
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -11,7 +10,6 @@ from app.document import TRANSFORM, Attachment, Document, Layer, Transform, laye
 from engine.geometry import IDENTITY_MOTION, Similarity
 
 UNMOVED: Final = Transform()
-NO_TURNS: Final[Mapping[int, float]] = MappingProxyType({})
 
 
 class PivotFrame(NamedTuple):
@@ -56,12 +54,10 @@ def parent_links(
     frame: float,
     *,
     before: bool = False,
-    turns: Mapping[int, float] = NO_TURNS,
 ) -> tuple[ChainLink, ...]:
     """Return the links from a layer, by its id, to its root ancestor at a frame.
 
-    The attachments are in effect from the frame on, or with `before` just before the frame. `turns`
-    are rotations of layers about their joints, in radians by id, on top of their transforms.
+    The attachments are in effect from the frame on, or with `before` just before the frame.
     """
     at = document.loop_frame(frame)
     links = []
@@ -69,8 +65,6 @@ def parent_links(
         joint = document.attachment_at(each, at, before=before)
         own = layer_value_at(document, each, TRANSFORM, at) or UNMOVED
         if joint is None or joint.applies_transform:
-            turn = turns.get(each.id)
-            own = replace(own, turn=own.turn + turn) if turn else own
             links.append(ChainLink(each, joint, own))
         elif joint.parent is None and joint.keep_world_transform:
             begun = layer_value_at(document, each, TRANSFORM, joint.kept_from) or UNMOVED
@@ -79,6 +73,18 @@ def parent_links(
         else:
             links.append(ChainLink(each, joint, UNMOVED if joint.parent is not None else own))
     return tuple(links)
+
+
+def turn_links(links: Sequence[ChainLink], turns: Mapping[int, float]) -> tuple[ChainLink, ...]:
+    """Return links with rotations of layers at their joints, in radians by id."""
+    found = []
+    for link in links:
+        turn, own = turns.get(link.layer.id), link.transform
+        turns_at_joint = link.attachment is None or link.attachment.applies_transform
+        if turn and turns_at_joint:
+            link = link._replace(transform=replace(own, turn=own.turn + turn))  # noqa: PLW2901
+        found.append(link)
+    return tuple(found)
 
 
 def compose_chain(

@@ -15,7 +15,15 @@ from app.document import (
     layer_value_at,
     layers_with_targets,
 )
-from app.motion.parenting.chain import KeptTransform, PivotFrameAt, compose_chain, parent_links
+from app.motion.parenting.chain import (
+    ChainLink,
+    KeptTransform,
+    PivotFrame,
+    PivotFrameAt,
+    compose_chain,
+    parent_links,
+    turn_links,
+)
 from app.rigging import bend_side, solve_chain
 from engine.geometry import Similarity
 
@@ -36,9 +44,8 @@ def place_layer(
 ) -> Similarity:
     """Return the transform of a layer at a frame: by its parents, its own, and by IK targets."""
     turns = find_turns(document, layer, frame, hinge, kept, before=before)
-    return compose_chain(
-        parent_links(document, layer, frame, before=before, turns=turns), hinge, kept
-    )
+    links = parent_links(document, layer, frame, before=before)
+    return compose_chain(turn_links(links, turns), hinge, kept)
 
 
 def find_turns(
@@ -50,21 +57,21 @@ def find_turns(
     *,
     before: bool = False,
 ) -> Turns:
-    """Return the rotations by IK targets at a frame that affect a layer."""
-    turns: dict[int, float] = {}
+    """Return the rotations by IK targets at a frame of all layers with the same root ancestor."""
+    turns: Turns = {}
     ends = layers_with_targets(document)
     if not ends:
         return turns
     place = joint_places(document, frame, hinge, kept, before=before)
-    whole = {each.id for each in document.parent_chain(layer, frame, before=before)}
+    root = document.parent_chain(layer, frame, before=before)[-1]
     chains = {end.id: document.parent_chain(end.id, frame, before=before) for end in ends}
     for end in sorted(ends, key=lambda end: len(chains[end.id])):
-        if not whole & {each.id for each in chains[end.id]}:
+        if chains[end.id][-1] is not root:
             continue
         target = layer_value_at(document, end, IK_TARGET, document.loop_frame(frame))
         bones = bones_above(document, end.id, frame, before=before)
         if target is not None and target.mix > 0 and bones:
-            turns |= reach_target(target, bones, end, place, turns)
+            turns = reach_target(target, bones, end, place, turns)
     return turns
 
 
@@ -77,11 +84,20 @@ def joint_places(
     before: bool = False,
 ) -> LayerPlaces:
     """Return the function that places a layer and its joint under rotations of layers."""
+    chains: dict[int, tuple[ChainLink, ...]] = {}
+    hinges: dict[tuple[int, complex], PivotFrame] = {}
+
+    def known_hinge(layer: Layer, point: complex) -> PivotFrame:
+        if (layer.id, point) not in hinges:
+            hinges[layer.id, point] = hinge(layer, point)
+        return hinges[layer.id, point]
 
     def place(layer: int, turns: Turns) -> tuple[Similarity, complex]:
-        links = parent_links(document, layer, frame, before=before, turns=turns)
-        placement = compose_chain(links, hinge, kept)
-        return placement, placement.factor * links[0].pivot(hinge) + placement.shift
+        if layer not in chains:
+            chains[layer] = parent_links(document, layer, frame, before=before)
+        links = turn_links(chains[layer], turns)
+        placement = compose_chain(links, known_hinge, kept)
+        return placement, placement.factor * links[0].pivot(known_hinge) + placement.shift
 
     return place
 

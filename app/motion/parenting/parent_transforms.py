@@ -23,11 +23,13 @@ from app.motion.parenting.chain import (
     UNMOVED,
     PivotFrame,
     blend_transforms,
+    compose_chain,
     parent_links,
     pivot_frame_at,
     require_anchor,
+    turn_links,
 )
-from app.motion.parenting.layer_limbs import find_turns, place_layer
+from app.motion.parenting.layer_limbs import Turns, find_turns, place_layer
 from app.motion.tracing.point_trails import PointTrails
 from engine.arrays import Complexes
 from engine.geometry import Similarity
@@ -73,6 +75,7 @@ class ParentTransforms:
         }
         self._siblings = siblings
         self._placements: dict[tuple[int, float, bool], Similarity] = {}
+        self._turns: dict[tuple[int, float, bool], Turns] = {}
         self._kept: dict[tuple[int, Attachment, int], Similarity] = {}
         self._ahead = self._through()
 
@@ -106,7 +109,15 @@ class ParentTransforms:
     ) -> Similarity:
         hinge = partial(self._joint, frame=frame, poses=poses)
         kept = partial(self.kept_transform, frame=frame)
-        return place_layer(self.document, layer, frame, hinge, kept, before=before)
+        links = parent_links(self.document, layer, frame, before=before)
+        # All layers with the same root have the same rotations by IK targets.
+        known = links[-1].layer.id, frame, before
+        turns = None if poses else self._turns.get(known)
+        if turns is None:
+            turns = find_turns(self.document, layer, frame, hinge, kept, before=before)
+        if not poses:
+            self._turns[known] = turns
+        return compose_chain(turn_links(links, turns), hinge, kept)
 
     def kept_transform(self, layer: Layer, joint: Attachment, frame: float) -> Similarity:
         """Return the transform of a layer by an attachment with `keep_world_transform`.
@@ -165,7 +176,8 @@ class ParentTransforms:
         here = place_layer(document, layer.id, frame, hinge, kept, before=before)
         if joint.applies_transform:
             turns = find_turns(document, layer.id, frame, hinge, kept, before=before)
-            link = parent_links(document, layer.id, frame, before=before, turns=turns)[0]
+            links = parent_links(document, layer.id, frame, before=before)
+            link = turn_links(links, turns)[0]
             here = here.compose(link.transform.about(own.position).inverse)
         if joint.parent is None:
             by = parent_links(document, layer.id, frame, before=True)[-1].scene_motion

@@ -1,4 +1,3 @@
-import functools
 import itertools
 import json
 import os
@@ -13,6 +12,7 @@ import numpy as np
 import pytest
 from animations import PARTED, Posed, evaluator_of, moving_document
 from documents import altered
+from models import PIXELS, animation_of, exported, read, settings, values
 from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 from pygltflib import GLTF2
@@ -22,7 +22,6 @@ from still_poses import posed
 from app.document import (
     HOLD,
     VISIBILITY,
-    ExportSettings,
     FrameRange,
     Group,
     clip_of,
@@ -34,57 +33,12 @@ from app.export import (
     MeshExport,
     check_request,
     plan_export,
-    with_reduced_meshes,
 )
-from app.export_formats import MeshOptions
-from app.motion import Animation, Evaluator
 from app.storage import decode_picture, load_project, sample_images
-from engine.arrays import Complexes, Floats
+from engine.arrays import Complexes
 from engine.domain import find_closed_cuts
 
 TOLERANCE = 0.5
-PIXELS = 100  # a metre
-KINDS = {5123: "<u2", 5125: "<u4", 5126: "<f4"}
-WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
-
-
-def settings(format_="glb", **shapes) -> ExportSettings:
-    return ExportSettings(format=format_, shapes=MeshOptions(**shapes))
-
-
-@functools.cache
-def animation_of(clip):
-    return Animation(clip)
-
-
-def exported(document, out, chosen=None):
-    """Export a document; return it with the meshes that were exported, and the export."""
-    request = ExportRequest(out=out, settings=chosen or settings(), project="walk")
-    check_request(document, request)
-    light = with_reduced_meshes(document, request.settings.shapes.triangles)
-    evaluator = Evaluator.exact(light)
-    pictures = {f.id: decode_picture(f.picture.data, "").rgba for f in light.layers}
-    maker = MeshExport(light, pictures, evaluator, plan_export(light, request, evaluator))
-    steps = list(maker.run())
-    assert steps == sorted(steps)
-    assert steps[-1] == len(maker._plan.times)
-    return light, maker
-
-
-def read(path: Path) -> GLTF2:
-    return GLTF2().load_binary(str(path))
-
-
-def values(gltf: GLTF2, number: int) -> Floats:
-    accessor = gltf.accessors[number]
-    view = gltf.bufferViews[accessor.bufferView]
-    flat = np.frombuffer(
-        gltf.binary_blob(),
-        KINDS[accessor.componentType],
-        accessor.count * WIDTHS[accessor.type],
-        view.byteOffset + (accessor.byteOffset or 0),
-    )
-    return flat.astype(np.float64).reshape(accessor.count, WIDTHS[accessor.type])
 
 
 def places(gltf: GLTF2, number: int) -> Complexes:
