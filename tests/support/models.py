@@ -21,7 +21,7 @@ from engine.arrays import Floats
 
 PIXELS = 100  # a metre
 KINDS = {5123: "<u2", 5125: "<u4", 5126: "<f4"}
-WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
 
 def settings(format_="glb", **shapes) -> ExportSettings:
