@@ -21,6 +21,7 @@ SMALLEST_SCALE, LARGEST_SCALE = 0.75, 3.0
 MOST_RECENT = 10
 MOST_GHOSTS, LARGEST_GHOST_STEP, LONGEST_PATH_REACH = 6, 24, 240
 CHECKER = "checker"
+LARGEST_DOCK = 500  # em
 LARGEST = 1024 * 1024  # bytes
 _COLOUR = re.compile("#[0-9a-f]{6}")
 
@@ -44,6 +45,8 @@ class Preferences:
     path_reach : int
         Motion paths show this many frames before and after the playhead; 0 stands for the whole
         preview range.
+    panel_width, timeline_height : float, optional
+        Sizes in em that the person set by dragging an edge; None follows the window.
     recent : tuple of Path
         Recently opened or saved files, the newest first.
     folder : Path, optional
@@ -64,6 +67,8 @@ class Preferences:
     ghost_step: int = 4
     ghosts_in_front: bool = False
     path_reach: int = 0
+    panel_width: float | None = None
+    timeline_height: float | None = None
     recent: tuple[Path, ...] = ()
     folder: Path | None = None
     exported: Path | None = None
@@ -168,6 +173,8 @@ def _understood(content: dict[str, Any]) -> Preferences:
         ghost_step=int(number("ghost_step", 1, LARGEST_GHOST_STEP)),
         ghosts_in_front=content.get("ghosts_in_front") is True,
         path_reach=int(number("path_reach", 0, LONGEST_PATH_REACH)),
+        panel_width=number("panel_width", 1, LARGEST_DOCK),
+        timeline_height=number("timeline_height", 1, LARGEST_DOCK),
         recent=tuple(Path(path) for path in paths if isinstance(path, str))[:MOST_RECENT],
         folder=folder,
         exported=exported,

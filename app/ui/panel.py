@@ -25,11 +25,21 @@ class Panel:
     place: Literal["MainDockSpace", "side", "bottom"] = "side"
     # Drawn before the panel. It stays visible if `draw` fails.
     draw_background: Callable[[Session, Look, Project], list[Action]] | None = None
-    # Whether a project has something for it; None for all projects. Otherwise it has no tab.
-    is_needed: Callable[[Project], object] | None = None
+    # Whether the person has switched it on; None for panels that always have a tab.
+    is_shown: Callable[[Session], bool] | None = None
+    # The height in em that its contents want; None if that never changes.
+    wanted_height: Callable[[Project], float] | None = None
 
-    def has_tab(self, project: Project | None) -> bool:
-        return self.is_needed is None or bool(project and self.is_needed(project))
+    def height_of(self, session: Session) -> float:
+        """Return the height in em that its contents want, 0 if they want none."""
+        project = session.project
+        return self.wanted_height(project) if self.wanted_height and project else 0.0
+
+    def has_tab(self, session: Session) -> bool:
+        """Return whether it has a tab now. All tabs go while the panel is folded."""
+        if self.place == "side" and session.display.is_panel_folded:
+            return False
+        return self.is_shown is None or self.is_shown(session)
 
     @property
     def labels(self) -> tuple[str, str, str]:
@@ -54,7 +64,9 @@ def bring_to_front(title: str) -> bool:
 
 
 def is_in_front(title: str) -> bool:
-    """Return whether a panel is visible. A tab behind another tab is not."""
+    """Return whether a panel is visible. A tab behind another tab or a folded one is not."""
     window = imgui.internal.find_window_by_name(f"###{title}")
     node = None if window is None else window.dock_node
-    return window is not None and (node is None or node.selected_tab_id == window.tab_id)
+    if window is None or not (window.active or window.was_active):
+        return False
+    return node is None or bool(node.selected_tab_id == window.tab_id)

@@ -1,17 +1,16 @@
-"""Messages in the lower right corner. They disappear unless the pointer is on them."""
+"""Messages above the timeline, at the left: one at a time."""
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, Toast, do
 from app.editor.actions.dialog_actions import dismiss_toast
-from app.texts import _
+from app.texts import _, ngettext
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import TOAST, small_text
 
 SECONDS = {"info": 5.0, "good": 8.0, "error": 15.0}
 FADE = 0.25  # seconds
 WIDTH = 24.0  # em
-MOST = 5
 ICONS = {
     "info": icons.ICON_FA_CIRCLE_INFO,
     "good": icons.ICON_FA_CIRCLE_CHECK,
@@ -19,36 +18,74 @@ ICONS = {
 }
 
 
-def draw_toasts(session: Session, look: Look) -> list[Action]:
-    """Draw the newest messages. Return actions that dismiss the expired ones."""
-    actions: list[Action] = []
-    viewport = imgui.get_main_viewport()
-    gap = 1.0 * look.em
-    right = viewport.work_pos.x + viewport.work_size.x - gap
-    status_bar = imgui.get_frame_height() + look.em
-    bottom = viewport.work_pos.y + viewport.work_size.y - status_bar - 0.5 * gap
-    now = session.clock()
-    for toast in reversed(session.notices.toasts[-MOST:]):
-        age = now - toast.born
-        left = SECONDS[toast.tone] - age
-        imgui.set_next_window_pos(ImVec2(right, bottom), imgui.Cond_.always, ImVec2(1, 1))
-        imgui.set_next_window_size(ImVec2(WIDTH * look.em, 0))
-        imgui.push_style_var(imgui.StyleVar_.alpha, max(0.15, min(1.0, age / FADE + 0.15)))
-        imgui.push_style_var(imgui.StyleVar_.window_border_size, 1.0)
-        imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.5 * look.em)
-        imgui.push_style_color(imgui.Col_.window_bg, look.palette.raised)
-        imgui.begin(f"{TOAST}{toast.place}", flags=_FLAGS)
-        imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
-        actions += _contents(toast, look)
-        hovered = imgui.is_window_hovered(imgui.HoveredFlags_.root_and_child_windows)
-        bottom -= imgui.get_window_height() + 0.5 * gap
-        _stripe(toast, look)
-        imgui.end()
-        imgui.pop_style_color()
-        imgui.pop_style_var(3)
-        if left < 0 and not hovered:
-            actions.append(do(dismiss_toast, toast))
-    return actions
+class ToastStack:
+    """Draws the newest message. Its time stands still under the pointer or behind a dialog."""
+
+    def __init__(self) -> None:
+        self._since: dict[Toast, float] = {}  # when a message came to the front, in clock seconds
+        self._at = 0.0  # the clock at the last frame
+
+    def draw(self, session: Session, look: Look) -> list[Action]:
+        """Draw the newest message. Return actions that dismiss the expired ones.
+
+        Errors and messages with a button wait behind newer ones, and then have their whole time.
+        """
+        toasts, now = session.notices.toasts, session.clock()
+        passed, self._at = now - self._at, now
+        if not toasts:
+            self._since.clear()
+            return []
+        front = toasts[-1]
+        since = self._since.get(front, now)
+        if session.dialogs.current is not None and front in self._since:
+            since += passed
+        actions, is_hovered = _draw_toast(session, look, front, now - since, len(toasts) - 1)
+        if is_hovered:
+            since = max(since, now - FADE)
+        self._since = {front: since}
+        if now - since > SECONDS[front.tone]:
+            actions.append(do(dismiss_toast, front))
+        for toast in toasts[:-1]:
+            waits = toast.tone == "error" or toast.action is not None
+            if not waits and now - toast.born > SECONDS[toast.tone]:
+                actions.append(do(dismiss_toast, toast))
+        return actions
+
+
+def _draw_toast(
+    session: Session, look: Look, toast: Toast, age: float, behind: int
+) -> tuple[list[Action], bool]:
+    """Draw a message. Return its actions, and whether the pointer is on it."""
+    window = imgui.get_main_viewport()
+    gap = 0.8 * look.em
+    drawing = imgui.internal.find_window_by_name("###Viewport")
+    if session.dialogs.current is not None:
+        # A dialog is in the middle, with its buttons at its lower edge.
+        imgui.set_next_window_pos(window.work_pos + ImVec2(gap, gap))
+    elif session.project is not None and drawing is not None:
+        corner = drawing.pos + ImVec2(gap, drawing.size.y - gap)
+        imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(0, 1))
+    else:
+        height = window.work_size.y - imgui.get_frame_height() - 2 * gap
+        corner = window.work_pos + ImVec2(gap, height)
+        imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(0, 1))
+    imgui.set_next_window_size(ImVec2(WIDTH * look.em, 0))
+    imgui.push_style_var(imgui.StyleVar_.alpha, max(0.15, min(1.0, age / FADE + 0.15)))
+    imgui.push_style_var(imgui.StyleVar_.window_border_size, 1.0)
+    imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.5 * look.em)
+    imgui.push_style_color(imgui.Col_.window_bg, look.palette.raised)
+    imgui.begin(f"{TOAST}{toast.place}", flags=_FLAGS)
+    imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
+    actions = _contents(toast, look)
+    if behind:
+        text = ngettext("{count} more message", "{count} more messages", behind)
+        small_text(look, text.format(count=behind))
+    is_hovered = imgui.is_window_hovered(imgui.HoveredFlags_.root_and_child_windows)
+    _stripe(toast, look)
+    imgui.end()
+    imgui.pop_style_color()
+    imgui.pop_style_var(3)
+    return actions, is_hovered
 
 
 _FLAGS = (

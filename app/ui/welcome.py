@@ -18,8 +18,9 @@ from app.editor.actions.project_files import files
 from app.errors import display_name
 from app.render import Thumbnail
 from app.texts import _
+from app.ui.style.drawing import show_picture
 from app.ui.style.theme import LARGE, SMALL, TITLE, Look, colour_u32
-from app.ui.style.widgets import bold_text, main_button, push_text_size, show_picture, text_button
+from app.ui.style.widgets import bold_text, main_button, push_text_size, text_button
 
 CARD, TALL, GAP, ROW = 11.5, 11.2, 1.0, 2.5  # em
 FIRST, FOOT = 6.4, 3.5  # em: height of the first card, and of the text on the other cards

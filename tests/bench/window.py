@@ -32,7 +32,7 @@ from tests.bench.stage.driver import (
 )
 from tests.bench.table import Row, Table, row_at_most, row_of
 
-TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
+TABS = ("Handle", "Layers", "Animate", "Shape", "Export", "Measure")
 HARD = 6.0  # how much farther a hard pull goes
 LATER = 20  # pictures that are shown while a hand goes from a handle to the timeline
 

@@ -42,7 +42,7 @@ WARM = 0.5
 MOST_SLOPE = 1.0  # MB a minute
 FORMATS = [name for name, each in EXPORT_FORMATS.items() if not each.is_still]
 WAYS = 4  # of looking at it
-TABS = ("Handle", "Layers", "Poses", "Deform", "Distortion", "Mesh", "Export")
+TABS = ("Handle", "Layers", "Animate", "Shape", "Export", "Measure")
 
 
 class _OnScreen(Harness):

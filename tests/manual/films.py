@@ -92,13 +92,15 @@ def _cut_out(window: Film, path: Path) -> None:
     """A photo: the wall is gone, and a magnet on it goes by the brush."""
     with TemporaryDirectory() as scratch:
         window.open(_photo(Path(scratch)))
-        window.show_tab("Cut-out")
+        window.act(cut_out_editing.toggle_cut_tool, "keep")
+        window.settle()
+        window.run(lambda robot: robot.item_click("//###mode/###cut-out settings"))
         window.session.notices.toasts.clear()  # what opening it told
         come_to_rest(window)
         window.put(window.point(-60 + 300j))
         with window.filmed(path):
             window.stay(30)
-            window.click(window.item("//Cut-out/**/###remove tool"))
+            window.click(window.item("//###mode/###remove tool"))
             with window.cut():
                 window.act(cut_out_editing.set_brush_radius, 60.0)
                 window.settle()
@@ -106,7 +108,7 @@ def _cut_out(window: Film, path: Path) -> None:
             window.drag(*map(window.point, stroke), frames=24)
             window.settle()
             window.stay(30)
-            window.click(window.item("//Cut-out/**/###done"))
+            window.click(window.item("//###mode/###done"))
             window.stay(40)
 
 
@@ -178,14 +180,14 @@ def _walking(window: Film, path: Path) -> None:
     """A giraffe that has no handle yet is told to walk, and walks."""
     window.session.settings.default_meshing = Meshing(triangles=6_000)
     window.open(sample_images() / "giraffe.png")
-    window.show_tab("Motion")
+    window.show_tab("Animate")
     come_to_rest(window)
     window.put(window.point(-150 + 700j))
     with window.filmed(path):
         window.stay(20)
         window.type(imgui.Key.a)
         window.stay(60)
-        window.click(window.item("//Motion/**/###give"))
+        window.click(window.item("//Animate/**/###give"))
         with window.cut():
             window.until(lambda: project_of(window).motion_job is None)
             window.settle()
@@ -214,7 +216,7 @@ def _move(window: Film, path: Path) -> None:
 def _stiff(window: Film, path: Path) -> None:
     """Hands and head are stiff, and an arm has its bone."""
     project = open_sample(window, "character", frame=22)
-    window.show_tab("Material")
+    window.show_tab("Shape")
     ends = (handle_named(project, "right elbow"), handle_named(project, "right hand"))
     window.act(stiffness_editing.add_bone, ends)
     window.act(stiffness_editing.toggle_stiffness_tool, "stiff")

@@ -33,7 +33,7 @@ from app.ui.shortcuts.keys import (
     format_modified,
 )
 from app.ui.shortcuts.pointer_help import POINTER_HELP
-from app.ui.shortcuts.table import ACTIONS, MENUS
+from app.ui.shortcuts.table import ACTIONS, MENUS, SUBMENUS
 from app.ui.shortcuts.window_actions import PAGES
 
 ROOT = Path(__file__).parents[2]
@@ -52,7 +52,11 @@ def check_name(text: str) -> None:
     """Refuse what is written in italics and is no name of the program, by its whole path."""
     first, *rest = text.split(ARROW)
     if first in MENUS:
-        entries = {spec.label for spec in chain(*MENUS[first])}
+        groups = MENUS[first]
+        opened = [group for group in groups if rest and SUBMENUS.get(group[0]) == rest[0]]
+        if opened:
+            groups, rest = tuple(opened), rest[1:]
+        entries = {spec.label for spec in chain(*groups)}
         if all(part in entries or _is_written(part, "bars/menus.py") for part in rest[:1]):
             rest = rest[1:]
         else:

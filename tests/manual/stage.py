@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from harness import FRAME, Robot
+from harness import FRAME
 from imgui_bundle import ImVec2, imgui
 from PIL import Image
 
@@ -63,20 +63,6 @@ def play(window: Film, seconds: float) -> None:
 def scroll_to(window: Film, item: str) -> None:
     """Scroll a tab until an item is seen."""
     window.run(lambda robot: robot.scroll_to_item_y(item))
-    window.frames(4)
-
-
-def heighten_timeline(window: Film, by: float) -> None:
-    """Drag the upper edge of the timeline up by so many pixels."""
-
-    def drag(robot: Robot) -> None:
-        edge = ImVec2(SIZE[0] / 2, robot.window_info("//###Timeline").window.pos.y - 1)
-        robot.mouse_move_to_pos(edge)
-        robot.mouse_down(0)
-        robot.mouse_move_to_pos(ImVec2(edge.x, edge.y - by))
-        robot.mouse_up(0)
-
-    window.run(drag)
     window.frames(4)
 
 

@@ -22,7 +22,6 @@ from app.storage import sample_images
 from tests.manual.film import Film
 from tests.manual.stage import (
     SIZE,
-    heighten_timeline,
     project_of,
     save,
     scroll_to,
@@ -42,7 +41,6 @@ WALK = {
 RIGHT = 1  # the other button of the mouse
 HIGHER = (1000, 672)  # of a window where nothing in a tab is cut in half
 LAYERED = (1000, 812)
-CHOICE = 16.0  # pixels that the timeline is higher by, so that a row of a choice is seen whole
 
 
 def _still(window: Film, path: Path) -> None:
@@ -135,7 +133,7 @@ def _poses(window: Film, path: Path) -> None:
     window.act(playback.seek, 37)
     window.act(viewing.toggle_overlay, "onion")
     window.resize(HIGHER)
-    window.show_tab("Poses")
+    window.show_tab("Animate")
     _still(window, path)
 
 
@@ -164,7 +162,7 @@ def _stretch(window: Film, path: Path) -> None:
     """The limits of a giraffe, and how much of them its pose uses."""
     open_sample(window, "giraffe", frame=30)
     window.resize(HIGHER)
-    window.show_tab("Deform")
+    window.show_tab("Shape")
     window.act(viewing.zoom_to_pose)
     come_to_rest(window)
     window.run(lambda robot: robot.item_open("**/Details"))
@@ -176,7 +174,7 @@ def _distortion(window: Film, path: Path) -> None:
     open_sample(window, "giraffe", frame=30)
     window.act(viewing.zoom_to_pose)
     window.act(viewing.show_heat_map, "sigma_b")
-    window.show_tab("Distortion")
+    window.show_tab("Measure")
     _still(window, path)
 
 
@@ -185,7 +183,9 @@ def _mesh(window: Film, path: Path) -> None:
     window.open(sample_images() / "dragon.png")
     window.resize(HIGHER)
     window.act(viewing.toggle_overlay, "wireframe")
-    window.show_tab("Mesh")
+    window.show_tab("Shape")
+    window.run(lambda robot: robot.item_open("//Shape/**/###more of shape"))
+    scroll_to(window, "//Shape/**/###rebuild")
     _still(window, path)
 
 
@@ -197,9 +197,7 @@ def _layers(window: Film, path: Path) -> None:
     window.act(editing.select_handles, frozenset({handle_named(project, "hand")}))
     window.resize(LAYERED)
     window.show_tab("Layers")
-    heighten_timeline(window, CHOICE)
     _still(window, path)
-    heighten_timeline(window, -CHOICE)
 
 
 def _mouths(window: Film, path: Path) -> None:
@@ -212,10 +210,8 @@ def _mouths(window: Film, path: Path) -> None:
         next(row.toggle for row in project.tree if row.switch_group is not None),
     )
     head = next(layer.id for layer in project.document.layers if layer.name == "head")
-    heighten_timeline(window, CHOICE)
     window.act(set_active_layer, head)
     _still(window, path)
-    heighten_timeline(window, -CHOICE)
 
 
 def _camera(window: Film, path: Path) -> None:
@@ -246,10 +242,8 @@ def _sound(window: Film, path: Path) -> None:
     for frame, volume in ((14, 0.2), (30, 1.0)):
         window.act(editing.edit_document, channel_commands.set_key(channel, frame, volume))
     window.act(sounds.select_sound, talk.name)
-    window.show_tab("Sound")
-    heighten_timeline(window, CHOICE)
+    window.show_tab("Animate")
     _still(window, path)
-    heighten_timeline(window, -CHOICE)
 
 
 def _export(window: Film, path: Path) -> None:

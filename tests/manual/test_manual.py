@@ -182,7 +182,7 @@ def test_the_fields_of_project_files_are_told():
 
 def test_each_tab_has_its_page():
     # The tab of sounds is there once there is a sound.
-    assert set(PAGES) == {*shown_now()["tabs"], "Sound"}
+    assert set(PAGES) == {*shown_now()["tabs"], "Measure"}
     for page in PAGES.values():
         assert (build.PAGES / f"{page}.md").is_file()
     assert MENUS["Help"][0][0] is open_manual_page

@@ -9,7 +9,7 @@ from app.editor import Jobs, Session
 from app.editor.parts.settings import SessionSettings
 from app.render import Renderer
 from app.render.gpu.context import create_context
-from app.ui.bars.icons import GROUPS
+from app.ui.bars.tools import POSE, TOOLS
 from app.ui.shortcuts.table import MENUS
 from app.ui.window.window import Window
 
@@ -33,7 +33,7 @@ def shown_now() -> Shown:
             for panel in params.docking_params.dockable_windows
             if panel.dock_space_name == "side" and panel.is_visible
         ],
-        "tools": [spec.label for group in GROUPS for spec in group],
+        "tools": [POSE, *(spec.label for spec in TOOLS)],
     }
 
 

@@ -71,7 +71,7 @@ def _onion_skin(window: Harness) -> None:
         window.act(library.rename_library_pose, project.layer.library[-1].name, name)
     window.act(playback.seek, 37)
     window.act(viewing.toggle_overlay, "onion")
-    window.show_tab("Poses")
+    window.show_tab("Animate")
 
 
 def _layers(window: Harness) -> None:
@@ -88,7 +88,7 @@ def _heat_map(window: Harness) -> None:
     open_sample(window, "giraffe", frame=30)
     window.act(viewing.zoom_to_pose)
     window.act(viewing.show_heat_map, "sigma_b")
-    window.show_tab("Distortion")
+    window.show_tab("Measure")
 
 
 def _export(window: Harness) -> None:
@@ -106,7 +106,7 @@ def _split_view(window: Harness) -> None:
     viewing.set_side_by_side(window.session, beside=True)
     window.settle()
     window.act(viewing.zoom_to_pose)
-    window.show_tab("Distortion")
+    window.show_tab("Measure")
 
 
 def open_sample(window: Harness, sample: str, *, frame: int, theme: ThemeName = "dark") -> Project:

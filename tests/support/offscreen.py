@@ -85,7 +85,8 @@ class Offscreen:
         self._params.docking_params.layout_reset = True
 
     def show_tab(self, title: str) -> None:
-        """Bring a panel to the front in the next frames."""
+        """Bring a panel to the front in the next frames. Measures have a tab only meanwhile."""
+        self._window.session.display.measure(shown=title == "Measure")
         self._panel(title).focus_window_at_next_frame = True
 
     def point(self, place: complex) -> ImVec2:

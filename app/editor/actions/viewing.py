@@ -236,6 +236,28 @@ def toggle_auto_key(session: Session) -> None:
     session.settings.prefer(auto_key=auto_key)
 
 
+@named_action(
+    _("Panel"),
+    "Tab",
+    hint=_("Show or fold the panel at the right"),
+    active=lambda session: not session.display.is_panel_folded,
+)
+def toggle_panel(session: Session) -> None:
+    session.display.fold_panel(folded=not session.display.is_panel_folded)
+
+
+@named_action(
+    _("Measure tab"),
+    hint=_("Show distortion, its curves and its values at every key"),
+    active=lambda session: session.display.is_measuring,
+)
+def toggle_measuring(session: Session) -> None:
+    """Show the tab of measures in front, or hide it."""
+    session.display.measure(shown=not session.display.is_measuring)
+    if session.display.is_measuring:
+        session.display.focus_panel("Measure")
+
+
 def show_tab(session: Session, title: str) -> None:
     session.display.focus_panel(title)
 

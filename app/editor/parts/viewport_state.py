@@ -75,6 +75,8 @@ class DisplayState(Revised):
     screen: tuple[int, int] = (640, 480)  # pixels of the viewport
     full_detail: bool = True  # whether the full mesh is drawn fast enough in motion
     panel_to_focus: str = ""  # to be brought to the front in the next frame
+    is_panel_folded: bool = False  # whether the drawing has the panel's room
+    is_measuring: bool = False  # whether the tab of measures is there
     # Whether actions on the selection mean the timeline: it has the pointer, or else the focus.
     is_timeline_focused: bool = False
 
@@ -110,8 +112,16 @@ class DisplayState(Revised):
         self.full_detail = full_detail
 
     def focus_panel(self, title: str) -> None:
-        """Bring a panel to the front in the next frame; "" once it is there."""
+        """Bring a tab to the front in the next frame, also of the folded panel; "" once there."""
         self.panel_to_focus = title
+        self.is_panel_folded = self.is_panel_folded and not title
+
+    def fold_panel(self, *, folded: bool) -> None:
+        self.is_panel_folded = folded
+
+    def measure(self, *, shown: bool) -> None:
+        """Show or hide the tab of measures."""
+        self.is_measuring = shown
 
     def focus_timeline(self, *, focused: bool) -> None:
         """Note whether the person works in the timeline or in the drawing."""

@@ -9,13 +9,13 @@ from app.editor import Action, Session, do
 from app.editor.actions import viewing
 from app.editor.actions.action_spec import ActionSpec
 from app.editor.actions.project_files import files
-from app.editor.actions.timing import cycles, keys
+from app.editor.actions.timing import keys
 from app.errors import display_name
 from app.storage import CHECKER
 from app.texts import _
 from app.ui.bars.methods import draw_method_menu
 from app.ui.panel import Panel, is_in_front
-from app.ui.shortcuts.table import MENUS
+from app.ui.shortcuts.table import MENUS, SUBMENUS
 from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.shortcuts.window_actions import reset_layout
 from app.ui.style.theme import Look
@@ -51,15 +51,22 @@ def draw_main_menu(
 ) -> list[Action]:
     """Draw the entries of a menu from the table of actions; `panels` are the window's."""
     actions: list[Action] = []
+    was_submenu = False
     for number, group in enumerate(MENUS[title]):
-        if number:
+        submenu = SUBMENUS.get(group[0])
+        if number and not (was_submenu and submenu):
             imgui.separator()
+        was_submenu = submenu is not None
+        if submenu is not None and not imgui.begin_menu(_(submenu)):
+            continue
         for spec in group:
             actions += draw_action_item(session, spec)
             if spec in BELOW:
                 actions += BELOW[spec](session)
             if spec is reset_layout:
                 actions += _tabs(session, panels)
+        if submenu is not None:
+            imgui.end_menu()
     return actions
 
 
@@ -87,7 +94,7 @@ def _tabs(session: Session, panels: Sequence[Panel]) -> list[Action]:
         do(viewing.show_tab, panel.title)
         for panel in panels
         if panel.place == "side"
-        and panel.has_tab(session.project)
+        and panel.has_tab(session)
         and imgui.menu_item(panel.label, "", is_in_front(panel.title))[0]
     ]
     imgui.end_menu()
@@ -121,7 +128,7 @@ def _new_keys(session: Session) -> list[Action]:
 
 
 def _methods(session: Session) -> list[Action]:
-    """Draw the menu of interpolation methods. A narrow timeline has no space for it."""
+    """Draw the menu of interpolation methods."""
     project = session.project
     if not imgui.begin_menu(_("In-betweens"), project is not None):
         return []
@@ -154,5 +161,5 @@ BELOW: dict[ActionSpec, Callable[[Session], list[Action]]] = {
     viewing.MOTION_PATHS: _path_reaches,
     viewing.shrink_interface: _backdrops,
     keys.EASE_KEYS[-1]: _new_keys,
-    cycles.end_cycle: _methods,
+    viewing.WIREFRAME: _methods,
 }

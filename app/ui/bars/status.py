@@ -1,17 +1,19 @@
-"""The status bar."""
+"""The status bar: a hint at the left, and one state with its remedy at the right."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from imgui_bundle import ImColor, ImVec2, imgui, imspinner
 
-from app.document import DistortionRange, measure_target_errors, misses_target, relax_limits
+from app.document import measure_target_errors, misses_target, relax_limits
 from app.editor import Action, JobKind, Project, Session, do, pending_changes
+from app.editor.actions import viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.project_files import exporting
-from app.editor.actions.updates import stage_jobs
+from app.editor.actions.updates import correction_jobs, stage_jobs
 from app.errors import display_name
 from app.texts import _, ngettext
+from app.ui.shortcuts.keys import shown_keys
 from app.ui.style.theme import Look
 from app.ui.style.widgets import draw_tooltip, shorten_text
 
@@ -20,73 +22,113 @@ SLOW = 0.3  # seconds after which a job is reported; reports of shorter jobs wou
 ENDLESS = 5.0  # seconds after which a job can be cancelled
 SLOWED, STOPPED = 0.5, 0.05  # of the velocity at a key: below these, the status bar reports it
 MOST_LISTED = 3  # keys
-LIMIT_NAMES = {"k": _("Shear"), "σa": _("Stretch"), "σb": _("Squeeze")}  # by symbol
-
-
-class WarningAction(NamedTuple):
-    verb: Callable[[Session], None]
-    hint: str  # in its tooltip
-
-
-RELAX_POSE_LIMITS = WarningAction(
-    resolving.relax_limits_and_solve,
-    _("Raise the stretch limit, and pull the handles again"),
-)
-RELAX_MOTION_LIMITS = WarningAction(
-    resolving.relax_motion_limits,
-    _("Raise the stretch limit, so that the motion goes on through its keys"),
+# Jobs that bring the in-betweens up to date: nobody needs to tell them apart.
+UPDATES = (
+    *(stage_jobs.GLIMPSING, stage_jobs.SKETCHING, stage_jobs.REFINING, stage_jobs.STREAMING),
+    *(stage_jobs.ATTACHING, correction_jobs.CORRECTING, correction_jobs.CORRECTING_SHOWN_FRAME),
+    correction_jobs.FINDING_BASE_FRAMES,
 )
 
 
-class StatusItem(NamedTuple):
-    """An item at the right end of the status bar."""
+class StatusState(NamedTuple):
+    """The one state that the status bar tells, with the button of its remedy."""
 
     text: str
-    hint: str  # in its tooltip
+    remedy: Action | None = None
+    label: str = ""  # of the button
+    hint: str = ""  # the button's tooltip
+    is_running: bool = False  # whether a spinner shows that work goes on
     is_warning: bool = False
 
 
 def draw_status_bar(session: Session, look: Look) -> list[Action]:
-    """Draw the status bar: running jobs, warnings, and the state of project and window."""
-    gap = 1.6 * look.em
-    items = list_status_items(session)
-    width = sum(imgui.calc_text_size(item.text).x + gap for item in items)
-    end = imgui.get_window_width() - width + gap - look.em
-    actions: list[Action] = []
-    held_back, slowed = describe_pose_limit(session), describe_motion_limit(session)
-    slow = session.jobs.running_for(SLOW)
-    if held_back:
-        actions += _warn(session, look, held_back, RELAX_POSE_LIMITS)
-        imgui.same_line(0, gap)
-    elif slowed:
-        actions += _warn(session, look, slowed, RELAX_MOTION_LIMITS)
-        imgui.same_line(0, gap)
-    hint = session.tools.hint if held_back or slowed else session.tools.hint or _("Ready")
-    room = end - imgui.get_cursor_pos_x() - gap
-    waiting = pending_changes.deferred_label(session.project) if session.project else ""
-    exported = _export(session)
-    if exported:
-        _spinner(look)
-        imgui.text_unformatted(shorten_text(exported, max(room - 6 * look.em, 0.0)))
-        imgui.same_line(0, 0.8 * look.em)
-        if imgui.small_button(_("Cancel")):
-            actions.append(do(exporting.cancel_export))
-        draw_tooltip(_("Cancel the export"))
-    elif slow or waiting:
-        _spinner(look)
-        share = session.jobs.share_of(slow[0]) if slow else None
-        job = _("{job}…") if share is None else _("{job}… {share:.0%}")
-        imgui.text_unformatted(job.format(job=waiting or slow[0].label, share=share))
-        actions += _cancel(session, look, slow)
-    elif room > LEAST_ROOM * look.em:
+    """Draw the hint at the left, and the state at the right."""
+    state, gap = find_state(session), 0.8 * look.em
+    start, style = imgui.get_cursor_pos_x(), imgui.get_style()
+    end = imgui.get_window_width() - look.em
+    if state is not None:
+        button = imgui.calc_text_size(state.label).x + 2 * style.frame_padding.x + gap
+        beside = button * bool(state.label) + 1.6 * look.em * state.is_running
+        text = shorten_text(state.text, max(end - start - beside, look.em))
+        end -= imgui.calc_text_size(text).x + beside
+    room = end - start - gap
+    hint = session.tools.hint or _idle_hint(session)
+    if room > LEAST_ROOM * look.em:
         imgui.text_disabled(shorten_text(hint, room))
-    imgui.same_line(end)
-    for item in items:
-        imgui.text_colored(look.palette.warning if item.is_warning else look.palette.dim, item.text)
-        draw_tooltip(item.hint)
-        imgui.same_line(0, gap)
-    imgui.new_line()
-    return actions
+        imgui.same_line()
+    if state is None:
+        imgui.new_line()
+        return []
+    imgui.set_cursor_pos_x(end)
+    if state.is_running:
+        _spinner(look)
+    imgui.text_colored(look.palette.warning if state.is_warning else look.palette.text, text)
+    if state.remedy is None:
+        return []
+    imgui.same_line(0, gap)
+    is_pressed = imgui.small_button(state.label)
+    draw_tooltip(state.hint)
+    return [state.remedy] if is_pressed else []
+
+
+def find_state(session: Session) -> StatusState | None:
+    """Return the state that matters most now: what runs, what still moves, what is limited."""
+    exported, project = _export(session), session.project
+    if exported:
+        cancel = do(exporting.cancel_export)
+        hint = _("Cancel the export")
+        return StatusState(exported, cancel, _("Cancel"), hint, is_running=True)
+    moving = _describe_moving(project) if project else ""
+    if moving:
+        return StatusState(moving, is_running=True)
+    slow = session.jobs.running_for(SLOW)
+    waiting = pending_changes.deferred_label(project) if project else ""
+    if slow or waiting:
+        return _running(session, waiting, slow)
+    held_back, slowed = describe_pose_limit(session), describe_motion_limit(session)
+    if not (held_back or slowed) or project is None:
+        return None
+    state = StatusState(held_back or slowed, is_warning=True)
+    if relax_limits(project.layer.bounds) is None:
+        return state
+    if held_back:
+        remedy = do(resolving.relax_limits_and_solve)
+        hint = _("Raise the stretch limit, and pull the handles again")
+    else:
+        remedy = do(resolving.relax_motion_limits)
+        hint = _("Raise the stretch limit, so that the motion goes on through its keys")
+    return state._replace(remedy=remedy, label=_("Loosen"), hint=hint)
+
+
+def _running(session: Session, waiting: str, slow: Sequence[JobKind]) -> StatusState:
+    """Return the state of running jobs. Jobs with progress and endless ones can be cancelled."""
+    name = waiting or (_("Updating the animation") if slow[0] in UPDATES else slow[0].label)
+    share = session.jobs.share_of(slow[0]) if slow else None
+    text = _("{job}…") if share is None else _("{job}… {share:.0%}")
+    state = StatusState(text.format(job=name, share=share), is_running=True)
+    measured = tuple(kind for kind in slow if session.jobs.share_of(kind) is not None)
+    endless = session.jobs.running_for(ENDLESS) or measured
+    if not endless:
+        return state
+    cancel, hint = do(stage_jobs.give_up, endless[0]), _("Cancel: {job}").format(job=name)
+    return state._replace(remedy=cancel, label=_("Cancel"), hint=hint)
+
+
+def _describe_moving(project: Project) -> str:
+    """Return how far the farthest handle is from its target while a drag goes on; else ""."""
+    drag, shown = project.visible_drag, project.layer_runtime.shown
+    if drag is None or drag.is_at_rest or shown is None or shown.pose is None:
+        return ""
+    errors = measure_target_errors(shown.clip.layer, shown.pose).errors
+    if not errors:
+        return ""
+    return _("Still moving · {lag:.0f} px to go").format(lag=max(errors.values()))
+
+
+def _idle_hint(session: Session) -> str:
+    if not session.display.is_panel_folded:
+        return _("Ready")
+    return _("{keys} shows the panel").format(keys=shown_keys(viewing.toggle_panel))
 
 
 def describe_pose_limit(session: Session) -> str:
@@ -110,10 +152,10 @@ def describe_pose_limit(session: Session) -> str:
     farthest = max(lags, key=lags.__getitem__)
     name, lag, others = layer.handle(farthest).name, lags[farthest], len(lags) - 1
     if not others:
-        return _("Stretch limit reached – {name} is {lag:.0f} px short").format(name=name, lag=lag)
+        return _("At its limit · {name} is {lag:.0f} px short").format(name=name, lag=lag)
     return ngettext(
-        "Stretch limit reached – {name} is {lag:.0f} px short, {count} more too",
-        "Stretch limit reached – {name} is {lag:.0f} px short, {count} more too",
+        "At its limit · {name} is {lag:.0f} px short, {count} more too",
+        "At its limit · {name} is {lag:.0f} px short, {count} more too",
         others,
     ).format(name=name, lag=lag, count=others)
 
@@ -142,14 +184,14 @@ def describe_motion_limit(session: Session) -> str:
         where = _("{names} and {last}").format(names=", ".join(listed[:-1]), last=listed[-1])
     text = (
         ngettext(
-            "The motion stops at frame {frames} to keep within the stretch limit",
-            "The motion stops at frames {frames} to keep within the stretch limit",
+            "At its limit · the motion stops at frame {frames}",
+            "At its limit · the motion stops at frames {frames}",
             len(frames),
         )
         if stopped
         else ngettext(
-            "The motion slows down at frame {frames} to keep within the stretch limit",
-            "The motion slows down at frames {frames} to keep within the stretch limit",
+            "At its limit · the motion slows down at frame {frames}",
+            "At its limit · the motion slows down at frames {frames}",
             len(frames),
         )
     )
@@ -167,95 +209,6 @@ def _export(session: Session) -> str:
     if run.done == total:
         return _("Finishing {name}…").format(name=name)
     return _("Exporting {name}: {done} of {total}").format(name=name, done=run.done, total=total)
-
-
-def _cancel(session: Session, look: Look, slow: Sequence[JobKind]) -> list[Action]:
-    """Draw the cancel button of jobs that may never end or report progress."""
-    measured = tuple(kind for kind in slow if session.jobs.share_of(kind) is not None)
-    endless = session.jobs.running_for(ENDLESS) or measured
-    if not endless:
-        return []
-    imgui.same_line(0, 0.8 * look.em)
-    is_pressed = imgui.small_button(_("Cancel"))
-    draw_tooltip(_("Cancel: {job}").format(job=endless[0].label))
-    return [do(stage_jobs.give_up, endless[0])] if is_pressed else []
-
-
-def _warn(session: Session, look: Look, text: str, remedy: WarningAction) -> list[Action]:
-    """Draw a warning about the limits, with the button of its remedy."""
-    imgui.text_colored(look.palette.warning, text)
-    project = session.project
-    if project is None or relax_limits(project.layer.bounds) is None:
-        return []
-    imgui.same_line(0, 0.8 * look.em)
-    is_pressed = imgui.small_button(_("Loosen"))
-    draw_tooltip(remedy.hint)
-    return [do(remedy.verb)] if is_pressed else []
-
-
-def list_status_items(session: Session) -> list[StatusItem]:
-    """Return the items at the right end of the status bar."""
-    facts = []
-    project = session.project
-    if project is not None:
-        distortion = _distortion(project)
-        facts += [distortion] if distortion else []
-        count = len(project.layer.handles)
-        facts.append(
-            StatusItem(
-                ngettext("{count} handle", "{count} handles", count).format(count=count),
-                _("Handles of this drawing"),
-            )
-        )
-    if session.diagnostics.solver_seconds:
-        milliseconds = 1e3 * session.diagnostics.solver_seconds
-        facts.append(
-            StatusItem(
-                _("pose {time:.0f} ms").format(time=milliseconds),
-                _("Time to solve the pose"),
-            )
-        )
-    if project is not None and project.timeline.playhead.since is not None:
-        facts.append(
-            StatusItem(
-                _("{rate:.0f} fps").format(rate=imgui.get_io().framerate),
-                _("Frames drawn per second"),
-            )
-        )
-    return facts
-
-
-def _distortion(project: Project) -> StatusItem | None:
-    """Return the largest distortion of the shown frame, of the kind nearest to its limit."""
-    shown, curves = project.layer_runtime.shown, project.measured.curves.value
-    if shown is None:
-        return None
-    if shown.pose is not None:
-        extremes = DistortionRange.of(shown.pose)
-    elif curves is not None and curves.clip == project.clip:
-        extremes = curves.extremes_at(shown.frame)
-    else:
-        return None
-    uses = extremes.uses(project.layer.bounds)
-    most = max(uses, key=lambda use: use.share)
-    return StatusItem(
-        _("{name} {value:.2f}, limit {limit:.2f}").format(
-            name=LIMIT_NAMES[most.name], value=most.value, limit=most.limit
-        ),
-        "\n".join(
-            [_("Largest distortion anywhere in the shape, and its limit"), ""]
-            + [
-                _("{name} ({symbol}) {value:.3f}, limit {limit:.3f}").format(
-                    name=LIMIT_NAMES[use.name],
-                    symbol=use.name,
-                    value=use.value,
-                    limit=use.limit,
-                )
-                for use in uses
-            ]
-        ),
-        is_warning=most.is_all,
-    )
 
 
 def _spinner(look: Look) -> None:

@@ -21,13 +21,13 @@ from app.ui.dialogs.browser_shortcuts import (
 from app.ui.dialogs.browsing import chosen_folder, chosen_path, enter_folder, is_there, mark_entry
 from app.ui.dialogs.folder_listing import Entry, Listing, read_folder
 from app.ui.shortcuts.keys import ALT, format_chord
+from app.ui.style.drawing import show_picture
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import (
     draw_tooltip,
     icon_button,
     main_button,
     shorten_text,
-    show_picture,
     small_text,
 )
 

@@ -38,8 +38,7 @@ from app.ui.style.widgets import (
 BACKGROUNDS = (("transparent", _("Transparent")), ("colour", _("Colour")))
 FRAMINGS = (("fit", _("All motion")), ("canvas", _("Canvas")))
 RANGES = (("all", _("All frames")), ("own", _("From – to")))
-WHITE = "#ffffff"
-CAMERA_HINT = _("Each frame shows the camera's view.")
+WHITE, USES = "#ffffff", 26.0  # the latter in em: width of the list of formats
 
 
 def draw_export_panel(session: Session, look: Look, project: Project) -> list[Action]:
@@ -80,6 +79,8 @@ def _format(look: Look, settings: ExportSettings) -> ExportSettings:
     """Draw the formats in groups, each with its use."""
     label(look, _("Format"))
     now = EXPORT_FORMATS[settings.format]
+    width = USES * look.em
+    imgui.set_next_window_size_constraints((width, 0), (width, imgui.FLT_MAX))
     if imgui.begin_combo("##format", now.label, imgui.ComboFlags_.height_largest):
         group = ""
         for name, format_ in EXPORT_FORMATS.items():
@@ -104,7 +105,7 @@ def _picture(look: Look, project: Project, settings: ExportSettings) -> ExportSe
     label(look, _("Background"))
     settings = _background(look, settings)
     if project.document.camera:
-        small_text(look, CAMERA_HINT)
+        small_text(look, _("Each frame shows the camera's view."))
         return settings
     label(look, _("Framing"))
     match option_buttons(look, "framing", FRAMINGS, settings.framing):

@@ -1,4 +1,4 @@
-"""The menus: all named actions, in groups that separators part."""
+"""The menus: all named actions, in groups that separators part, and submenus."""
 
 from app.editor.actions import dialog_actions, editing, playback, tutorials, viewing
 from app.editor.actions.action_spec import ActionSpec
@@ -39,6 +39,27 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
         ),
         (layer_list.rename_active_layer,),
     ),
+    N_("View"): (
+        (
+            *(
+                viewing.zoom_to_pose,
+                viewing.zoom_to_motion,
+                viewing.zoom_to_selection,
+                viewing.FIT_PICTURE,
+            ),
+            *(viewing.zoom_to_actual_size, channel_keys.toggle_camera_view),
+        ),
+        (
+            *(viewing.HANDLES, viewing.OUTLINE, viewing.ONION_SKIN),
+            *(viewing.MIRROR_AXIS, viewing.MOTION_PATHS),
+        ),
+        (
+            *(viewing.toggle_measuring, viewing.toggle_heat_map),
+            *(viewing.toggle_comparison, viewing.WIREFRAME),
+        ),
+        (viewing.toggle_theme, viewing.enlarge_interface, viewing.shrink_interface),
+        (viewing.toggle_panel, window_actions.reset_layout),
+    ),
     N_("Handles"): (
         (handles.suggest_handles,),
         (pose_drag.pin_selected_handles, handle_editing.toggle_handles_locked),
@@ -57,53 +78,22 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
         (handle_editing.group_handles, handle_editing.ungroup_handles),
         (handles.mirror_handles, handle_editing.select_mirrored),
     ),
-    N_("Motion"): (
-        (preset_setup.begin_motion_setup,),
-        (joint_placement.mirror_joints, joint_placement.reset_joints),
-        (apply_motion.cancel_motion_job,),
-    ),
-    N_("View"): (
+    N_("Animate"): (
+        (playback.toggle_play, keys.toggle_loop, viewing.toggle_auto_key, keys.insert_key_in_row),
+        (recording.toggle_recording_armed, recording.discard_recording),
         (
-            *(
-                viewing.zoom_to_pose,
-                viewing.zoom_to_motion,
-                viewing.zoom_to_selection,
-                viewing.FIT_PICTURE,
-            ),
-            *(viewing.zoom_to_actual_size, channel_keys.toggle_camera_view),
-        ),
-        (
-            *(viewing.HANDLES, viewing.WIREFRAME, viewing.OUTLINE, viewing.toggle_heat_map),
-            *(
-                viewing.toggle_comparison,
-                viewing.ONION_SKIN,
-                viewing.MIRROR_AXIS,
-                viewing.MOTION_PATHS,
-            ),
-        ),
-        (viewing.toggle_theme, viewing.enlarge_interface, viewing.shrink_interface),
-        (window_actions.reset_layout,),
-    ),
-    N_("Time"): (
-        (
-            *(playback.toggle_play, playback.go_to_start, playback.go_to_end),
+            *(playback.go_to_start, playback.go_to_end),
             *(playback.PREVIOUS_FRAME, playback.NEXT_FRAME),
             *(playback.PREVIOUS_KEY, playback.NEXT_KEY),
-        ),
-        (
-            *(keys.insert_key_in_row, keys.toggle_loop, viewing.toggle_auto_key),
-            *(recording.toggle_recording_armed, recording.discard_recording),
+            *(playback.PREVIOUS_MARKER, playback.NEXT_MARKER),
         ),
         (keys.start_preview_at_playhead, keys.end_preview_at_playhead, keys.clear_preview_range),
-        (
-            *(keys.add_marker_at_playhead, channel_keys.key_camera),
-            *(playback.PREVIOUS_MARKER, playback.NEXT_MARKER, timeline_drag.fit_timeline),
-        ),
-    ),
-    N_("Sound"): ((sounds.ask_sound_to_add,),),
-    N_("Keys"): (
         (keys.use_next_tangent_mode, *keys.EASE_KEYS),
         (cycles.create_cycle, cycles.bake_cycle, cycles.end_cycle),
+        (keys.add_marker_at_playhead, channel_keys.key_camera, timeline_drag.fit_timeline),
+        (preset_setup.begin_motion_setup, sounds.ask_sound_to_add),
+        (joint_placement.mirror_joints, joint_placement.reset_joints),
+        (apply_motion.cancel_motion_job,),
     ),
     N_("Help"): (
         (window_actions.open_manual_page, dialog_actions.show_shortcuts),
@@ -112,6 +102,15 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
             *(dialog_actions.REPORT, dialog_actions.show_import_log),
         ),
     ),
+}
+# Groups that are submenus, by their first entries.
+SUBMENUS: dict[ActionSpec, str] = {
+    viewing.toggle_measuring: N_("Measure"),
+    playback.go_to_start: N_("Playhead"),
+    keys.start_preview_at_playhead: N_("Preview range"),
+    keys.use_next_tangent_mode: N_("Easing"),
+    cycles.create_cycle: N_("Repeats"),
+    joint_placement.mirror_joints: N_("Joints"),
 }
 ACTIONS = {spec.label: spec for groups in MENUS.values() for group in groups for spec in group}
 # Esc ends the first of these that is active.

@@ -14,15 +14,10 @@ START = "index"
 PAGES = {
     "Handle": "handles",
     "Layers": "layers",
-    "Poses": "poses",
-    "Motion": "ready-motions",
-    "Deform": "stretch",
-    "Material": "stiff",
-    "Distortion": "distortion",
-    "Mesh": "mesh",
-    "Cut-out": "cut-out",
-    "Sound": "sound",
+    "Animate": "poses",
+    "Shape": "stretch",
     "Export": "export",
+    "Measure": "distortion",
 }
 
 
@@ -53,7 +48,9 @@ def find_manual_page(session: Session) -> str:
 @named_action(_("Export…"), "Ctrl+E")
 def show_export(session: Session) -> None:
     """Show the export panel. If it is in front already, ask for the file and begin."""
-    if bring_to_front("Export"):
+    if session.display.is_panel_folded:
+        session.display.focus_panel("Export")
+    elif bring_to_front("Export"):
         export_settings.ask_destination_and_export(session)
 
 

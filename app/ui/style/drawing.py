@@ -47,3 +47,19 @@ def draw_tag(look: Look, corner: ImVec2, text: str) -> None:
     draw_list = imgui.get_window_draw_list()
     draw_list.add_rect_filled(corner, opposite, colour_u32(palette.accent), 0.3 * look.em)
     draw_centred_text(corner, opposite, text, colour_u32(palette.on_accent))
+
+
+def show_picture(
+    texture: int, size: tuple[int, int], corner: ImVec2, room: ImVec2, *, opacity: float = 1.0
+) -> None:
+    """Draw a texture centred in a box, as large as fits. `size` is in pixels."""
+    scale = min(room.x / size[0], room.y / size[1])
+    width, height = scale * size[0], scale * size[1]
+    x = corner.x + (room.x - width) / 2
+    y = corner.y + (room.y - height) / 2
+    imgui.get_window_draw_list().add_image(
+        imgui.ImTextureRef(texture),
+        ImVec2(x, y),
+        ImVec2(x + width, y + height),
+        col=imgui.IM_COL32(255, 255, 255, round(255 * opacity)),
+    )

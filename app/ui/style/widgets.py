@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, ImVec4, imgui, imgui_ctx
 from app.texts import _
 from app.ui.style.theme import SMALL, Look
 
-LABEL_WIDTH, NAME_WIDTH = 6.2, 14.0  # em
+LABEL_WIDTH, NAME_WIDTH, TIGHT = 5.6, 14.0, 0.15  # em; the last: padding in fixed widths
 FILL = -imgui.FLT_MIN  # as a width: the rest of the line
 TOAST = "##toast"  # prefix of the windows of toasts
 POSE_PAYLOAD = "pose of the library"  # drag-and-drop type of a library pose
@@ -69,10 +69,12 @@ def begin_tooltip() -> bool:
     for window in imgui.get_current_context().windows:
         if not window.was_active or not window.name.startswith(TOAST):
             continue
-        if mouse.x + room[0] > window.pos.x and mouse.y + room[1] > window.pos.y:
-            # Toasts are in the lower right corner, so the space up and to the left is free.
-            corner = ImVec2(mouse.x - 0.4 * em, mouse.y - 0.4 * em)
-            imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(1, 1))
+        low, high = window.pos, window.pos + window.size
+        is_beside = mouse.x < high.x and mouse.x + room[0] > low.x
+        if is_beside and mouse.y < high.y and mouse.y + room[1] > low.y:
+            # Toasts are above the timeline, so there is room above them.
+            corner = ImVec2(mouse.x, min(mouse.y, low.y) - 0.4 * em)
+            imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(0, 1))
     return imgui.begin_tooltip()
 
 
@@ -152,10 +154,18 @@ def text_button(
 ) -> bool:
     """Draw a button with its tooltip: a hint, or the reason why the button is disabled."""
     imgui.begin_disabled(reason is not None)
-    pressed = imgui.button(text, ImVec2(width, 0))
+    pressed = fitted_button(text, width)
     imgui.end_disabled()
     draw_tooltip(reason or hint, keys)
     return pressed
+
+
+def fitted_button(text: str, width: float) -> bool:
+    """Draw a button. If its width is given, its text may come close to the edges."""
+    style = imgui.get_style().frame_padding
+    padding = ImVec2(TIGHT * imgui.get_font_size() if width else style.x, style.y)
+    with imgui_ctx.push_style_var(imgui.StyleVar_.frame_padding, padding):
+        return imgui.button(text, ImVec2(width, 0))
 
 
 def menu_entry(text: str, icon: str = "", keys: str = "", *, reason: str | None = None) -> bool:
@@ -249,27 +259,11 @@ def option_buttons(
         is_current = value == current
         imgui.push_style_color(imgui.Col_.button, palette.pressed if is_current else palette.raised)
         imgui.push_style_color(imgui.Col_.text, palette.text if is_current else palette.dim)
-        if imgui.button(f"{text}###{value}", ImVec2(width, 0)) and not is_current:
+        if fitted_button(f"{text}###{value}", width) and not is_current:
             chosen = value
         imgui.pop_style_color(2)
     imgui.pop_id()
     return chosen
-
-
-def show_picture(
-    texture: int, size: tuple[int, int], corner: ImVec2, room: ImVec2, *, opacity: float = 1.0
-) -> None:
-    """Draw a texture centred in a box, as large as fits. `size` is in pixels."""
-    scale = min(room.x / size[0], room.y / size[1])
-    width, height = scale * size[0], scale * size[1]
-    x = corner.x + (room.x - width) / 2
-    y = corner.y + (room.y - height) / 2
-    imgui.get_window_draw_list().add_image(
-        imgui.ImTextureRef(texture),
-        ImVec2(x, y),
-        ImVec2(x + width, y + height),
-        col=imgui.IM_COL32(255, 255, 255, round(255 * opacity)),
-    )
 
 
 def shorten_text(text: str, width: float) -> str:

@@ -27,7 +27,7 @@ from app.ui.timeline.row import ChannelLane, GroupRow, HasFrame, LayerRow, has_l
 PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the tracks
 MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the marker band, with names or without
 BAR, BAR_SHARE = 3.6, 0.62  # em: largest height of segment bars, and as a share of the row's
-CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height, bars are higher, without overview
+CRAMPED, CRAMPED_SHARE = 4.0, 0.85  # em: below this height, bars are higher, without overview
 ROUNDING = 0.4  # em
 NAMES, NAMES_SHARE = 11.0, 0.25  # em: largest width of the names, and as a share of all
 SOUND, SOUNDS_SHARE = 1.9, 0.4  # em: height of a sound's lane; all of them, as a share of all

@@ -68,7 +68,7 @@ def draw_key_menu(bands: TimelineLayout, channel: Channel[Any], key: BaseKey) ->
         actions += _motion_items(key, taken)
     actions += _cycle_items(bands, key.frame)
     imgui.separator()
-    actions += _time_items(bands.session, bands.look, project)
+    actions += draw_time_items(bands.session, bands.look, project)
     imgui.end_popup()
     return actions
 
@@ -129,20 +129,12 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
         actions.append(do(keys.add_marker, frame))
     actions += _cycle_items(bands, frame)
     imgui.separator()
-    actions += _time_items(bands.session, bands.look, bands.project)
+    actions += draw_time_items(bands.session, bands.look, bands.project)
     if track is not None:
         imgui.separator()
         if imgui.menu_item_simple(_("Delete track")):
             actions.append(do(editing.edit_layer, track_commands.remove_tracks, track.handles[:1]))
     imgui.end_popup()
-    return actions
-
-
-def draw_time_menu(session: Session, look: Look, project: Project) -> list[Action]:
-    actions: list[Action] = []
-    if imgui.begin_popup("menu of time"):
-        actions += _time_items(session, look, project)
-        imgui.end_popup()
     return actions
 
 
@@ -164,7 +156,8 @@ def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
     return actions
 
 
-def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_time_items(session: Session, look: Look, project: Project) -> list[Action]:
+    """Draw the entries of the open menu that change the time of keys, and the preview range."""
     actions: list[Action] = []
     actions += draw_action_item(session, cycles.create_cycle)
     count, chosen = len(frames_in(project.document, project.channel)), project.selection.key_count

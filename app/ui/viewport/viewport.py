@@ -127,7 +127,7 @@ def draw_viewport_panel(
         actions.append(do(tool_pointer.hover_handle, handles.hovered))
     draw_mirror_axis(look, axis)
     actions += _update_hint(session, screen, spot, is_over=is_over)
-    if session.display.tint == "stiffness" and not is_in_front("Material"):
+    if session.display.tint == "stiffness" and not is_in_front("Shape"):
         actions.append(do(viewing.set_tint, None))
     if _shows_handles(session, project):
         draw_shapes(look, screen, layer_bones(project, spot.em))

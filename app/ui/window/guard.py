@@ -8,6 +8,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx,
 
 from app.editor import Action, Session, do, error_reports
 from app.texts import _
+from app.ui.panel import Panel
 from app.ui.style.theme import Look
 from app.ui.style.widgets import draw_tooltip, small_text
 
@@ -220,3 +221,18 @@ def _state(session: Session) -> tuple[object, ...]:
         *(chosen.handles, chosen.channel, chosen.other_layers, tuple(chosen.keys.items())),
         *(listed.toggled_rows, listed.solo, project.viewport.view, project.timeline.playhead),
     )
+
+
+def name_menu(title: str) -> str:
+    """Return the name of a menu's part."""
+    return _("The menu {menu}").format(menu=_(title))
+
+
+def name_panel(panel: Panel) -> str:
+    """Return the name of a panel's part."""
+    return _("The panel {panel}").format(panel=_(panel.title))
+
+
+def name_picture(panel: Panel) -> str:
+    """Return the name of the part behind a panel."""
+    return _("The picture in {panel}").format(panel=_(panel.title))

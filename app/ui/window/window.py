@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from functools import partial
-from operator import attrgetter
 from pathlib import Path
 
 from imgui_bundle import (  # before glfw: it brings the library itself
@@ -12,10 +11,6 @@ from imgui_bundle import (  # before glfw: it brings the library itself
 )
 
 from app.editor.layering.pictures import drop_files
-from app.ui.panels.layers.tab import draw_layers_panel
-from app.ui.panels.motion_preset.tab import draw_motion_panel
-from app.ui.panels.pose_library.tab import draw_poses_panel
-from app.ui.panels.sound.tab import draw_sound_panel
 
 import glfw  # isort: skip
 
@@ -28,11 +23,14 @@ from app.render.gpu.context import describe_graphics, is_software
 from app.storage import sample_images
 from app.texts import N_, _, message_of
 from app.ui.panel import Panel
-from app.ui.panels import deform, export, handle
-from app.ui.panels.distortion.tab import draw_distortion_panel
-from app.ui.panels.layer_setup import cut_out, domain, material
+from app.ui.panels import export, handle
+from app.ui.panels.animate.tab import draw_animate_panel
+from app.ui.panels.layers.tab import draw_layers_panel
+from app.ui.panels.measure.tab import draw_measure_panel
+from app.ui.panels.shape.tab import draw_shape_panel
 from app.ui.style.theme import Look
 from app.ui.timeline import timeline
+from app.ui.timeline.rows.height import wanted_height
 from app.ui.viewport import viewport
 from app.ui.viewport.canvas import Canvas
 from app.ui.viewport.split_view import SplitTextures
@@ -47,7 +45,6 @@ from app.ui.window.window_frame import WindowFrame
 from engine.arrays import Bytes
 
 SIZE = (1280, 800)
-SOUNDS = attrgetter("document.sounds")
 PAUSE = 0.1  # seconds between frames that only update the time of a job
 
 
@@ -200,27 +197,27 @@ class Window:
 
     def _panels(self) -> list[Panel]:
         draw_layers = partial(draw_layers_panel, pictures=self._layer_picture)
-        draw_poses = partial(draw_poses_panel, pictures=self._pose_picture)
+        draw_animate = partial(draw_animate_panel, pictures=self._pose_picture)
         return [
             Panel(
-                N_("Viewport"),
-                icons.ICON_FA_IMAGE,
-                self._draw_viewport,
+                *(N_("Viewport"), icons.ICON_FA_IMAGE, self._draw_viewport),
                 place="MainDockSpace",
                 draw_background=self._draw_ground,
             ),
-            Panel(N_("Timeline"), icons.ICON_FA_FILM, timeline.draw_timeline_panel, place="bottom"),
+            Panel(
+                *(N_("Timeline"), icons.ICON_FA_FILM, timeline.draw_timeline_panel),
+                place="bottom",
+                wanted_height=wanted_height,
+            ),
             Panel(N_("Handle"), icons.ICON_FA_CIRCLE_DOT, handle.draw_handle_panel),
             Panel(N_("Layers"), icons.ICON_FA_LAYER_GROUP, draw_layers),
-            Panel(N_("Poses"), icons.ICON_FA_PERSON_RUNNING, draw_poses),
-            Panel(N_("Motion"), icons.ICON_FA_PERSON_WALKING, draw_motion_panel),
-            Panel(N_("Deform"), icons.ICON_FA_SLIDERS, deform.draw_deform_panel),
-            Panel(N_("Material"), icons.ICON_FA_CUBE, material.draw_material_panel),
-            Panel(N_("Distortion"), icons.ICON_FA_CHART_LINE, draw_distortion_panel),
-            Panel(N_("Mesh"), icons.ICON_FA_SHAPES, domain.draw_domain_panel),
-            Panel(N_("Cut-out"), icons.ICON_FA_SCISSORS, cut_out.draw_cut_out_panel),
-            Panel(N_("Sound"), icons.ICON_FA_MUSIC, draw_sound_panel, is_needed=SOUNDS),
+            Panel(N_("Animate"), icons.ICON_FA_PERSON_RUNNING, draw_animate),
+            Panel(N_("Shape"), icons.ICON_FA_SHAPES, draw_shape_panel),
             Panel(N_("Export"), icons.ICON_FA_FILE_EXPORT, export.draw_export_panel),
+            Panel(
+                *(N_("Measure"), icons.ICON_FA_CHART_LINE, draw_measure_panel),
+                is_shown=lambda session: session.display.is_measuring,
+            ),
         ]
 
     def _draw_ground(self, session: Session, _: Look, project: Project) -> list[Action]:

@@ -26,24 +26,26 @@ from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
 from app.texts import _, message_of
-from app.ui import toasts, welcome
-from app.ui.bars.icons import draw_icon_bar
+from app.ui import welcome
 from app.ui.bars.menus import draw_main_menu
 from app.ui.bars.status import draw_status_bar
+from app.ui.bars.tools import draw_tool_bar
 from app.ui.dialogs.dialogs import Dialogs
-from app.ui.panel import Panel, bring_to_front
+from app.ui.panel import Panel
+from app.ui.panels.modes.bar import draw_mode_bar
 from app.ui.shortcuts.key_input import collect_key_actions
 from app.ui.shortcuts.table import MENUS
 from app.ui.style.theme import Look, interface_scale
+from app.ui.toasts import ToastStack
 from app.ui.window.action_queue import ActionQueue
 from app.ui.window.appearance import Appearance
-from app.ui.window.docking import Docking
-from app.ui.window.guard import FrameStep, WindowPart
+from app.ui.window.docks.docking import Docking
+from app.ui.window.guard import FrameStep, WindowPart, name_menu, name_panel, name_picture
 from app.ui.window.idling import AWAKE, IDLE_FPS, FramePace
 from app.ui.window.tutorial.card import Callout
 
 LEFT = imgui.MouseButton_.left
-MENU_BAR, STATUS_BAR, ICON_BAR = _("The menu bar"), _("The status bar"), _("The toolbar")
+MENU_BAR, STATUS_BAR, TOOL_BAR = _("The menu bar"), _("The status bar"), _("The toolbar")
 
 
 class WindowFrame:
@@ -72,6 +74,7 @@ class WindowFrame:
         over = (
             # Hello ImGui draws the tabs themselves.
             WindowPart(_("The tab bar"), self._draw_tabs, place="window"),
+            WindowPart(_("The mode bar"), draw_mode_bar, place="window"),
             WindowPart(_("The welcome view"), partial(_welcome, previews=previews), place="window"),
             WindowPart(_("The guide"), self._draw_guide, place="window"),
             WindowPart(
@@ -80,24 +83,24 @@ class WindowFrame:
                 place="window",
                 dismissal=do(close_dialog),
             ),
-            WindowPart(_("The messages"), toasts.draw_toasts, place="window"),
+            WindowPart(_("The messages"), ToastStack().draw, place="window"),
         )
         bars_around = (
             WindowPart(MENU_BAR, self._draw_menus, place="bar"),
             WindowPart(STATUS_BAR, draw_status_bar, place="bar"),
-            WindowPart(ICON_BAR, _with_project(draw_icon_bar), place="bar"),
+            WindowPart(TOOL_BAR, _with_project(draw_tool_bar), place="bar"),
         )
         menus = [
             WindowPart(
-                _name_menu(title),
+                name_menu(title),
                 partial(draw_main_menu, title=title, panels=panels),
                 place="menu",
             )
             for title in MENUS
         ]
-        docked = [WindowPart(_name_panel(each), _with_project(each.draw)) for each in panels]
+        docked = [WindowPart(name_panel(each), _with_project(each.draw)) for each in panels]
         grounds = [
-            WindowPart(_name_picture(each), _with_project(each.draw_background))
+            WindowPart(name_picture(each), _with_project(each.draw_background))
             for each in panels
             if each.draw_background is not None
         ]
@@ -131,16 +134,21 @@ class WindowFrame:
         calls.setup_imgui_config = self._appearance.configure
         calls.setup_imgui_style = self._appearance.apply_theme
         calls.pre_new_frame = partial(self.run_guarded, self._begin_frame)
-        calls.show_menus = partial(self._ask, MENU_BAR)
+        # The docks are drawn between these two.
+        calls.show_menus = hello_imgui.sequence_functions(
+            partial(self._ask, MENU_BAR), self._docking.narrow_tabs
+        )
         calls.show_status = partial(self._ask, STATUS_BAR)
-        calls.show_gui = self._draw_over_panels
+        calls.show_gui = hello_imgui.sequence_functions(
+            self._docking.restore_style, self._draw_over_panels
+        )
         calls.before_imgui_render = self._apply_actions
         calls.confirm_exit = self._may_exit
         options = hello_imgui.EdgeToolbarOptions()
         options.size_em = 2.7
         options.window_padding_em = ImVec2(0.35, 0.5)
-        icons = partial(self._ask, ICON_BAR)
-        calls.add_edge_toolbar(hello_imgui.EdgeToolbarType.left, icons, options)
+        tools = partial(self._ask, TOOL_BAR)
+        calls.add_edge_toolbar(hello_imgui.EdgeToolbarType.left, tools, options)
         params.fps_idling.fps_idle = IDLE_FPS
         params.fps_idling.time_active_after_last_event = AWAKE
         return params
@@ -182,8 +190,8 @@ class WindowFrame:
 
     def _draw_panel(self, panel: Panel) -> None:
         if panel.draw_background is not None:
-            self._ask(_name_picture(panel))
-        self._ask(_name_panel(panel))
+            self._ask(name_picture(panel))
+        self._ask(name_panel(panel))
 
     def _ask(self, name: str) -> None:
         """Draw a part, and collect its actions."""
@@ -192,7 +200,7 @@ class WindowFrame:
     def _draw_menus(self, *_rest: object) -> list[Action]:
         for title in MENUS:
             if imgui.begin_menu(_(title)):
-                self._ask(_name_menu(title))
+                self._ask(name_menu(title))
                 imgui.end_menu()
         return []
 
@@ -213,7 +221,7 @@ class WindowFrame:
         session, project = self.session, self.session.project
         self._seen, self._places = self._places, {}
         self._appearance.begin_frame()
-        self._docking.begin_frame(interface_scale(session.settings.preferences.scale), project)
+        self._docking.begin_frame(interface_scale(session.settings.preferences.scale), session)
         # The tabs that show these set them again in every frame.
         if session.export.frame_box is not None:
             session.export.show_frame_box(None)
@@ -248,7 +256,7 @@ class WindowFrame:
         actions, self._actions, self._asked = self._actions + self._asked, [], []
         self.queue.apply(actions)
         if self.session.display.panel_to_focus:
-            bring_to_front(self.session.display.panel_to_focus)
+            self._docking.bring_to_front(self.session.display.panel_to_focus)
             self.session.display.focus_panel("")
         # After the actions, so that a drag continues with the newest target, and before the picture
         # is drawn, which shows the newest result.
@@ -275,18 +283,6 @@ class WindowFrame:
         # The close button of the window. The answer follows as an action.
         self._actions.append(do(saving.request_quit))
         return False
-
-
-def _name_menu(title: str) -> str:
-    return _("The menu {menu}").format(menu=_(title))
-
-
-def _name_panel(panel: Panel) -> str:
-    return _("The panel {panel}").format(panel=_(panel.title))
-
-
-def _name_picture(panel: Panel) -> str:
-    return _("The picture in {panel}").format(panel=_(panel.title))
 
 
 def _with_project(

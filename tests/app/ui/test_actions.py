@@ -194,7 +194,7 @@ def test_an_arrow_nudges_and_does_not_go_to_a_key(window):
 def test_greyed_buttons_of_panels_show_their_reasons(window, loose, monkeypatch):
     shown = []
     monkeypatch.setattr(style_widgets, "draw_tooltip", lambda text, *_: shown.append(text))
-    for tab in ("Layers", "Material", "Mesh"):
+    for tab in ("Layers", "Shape"):
         window.show_tab(tab)
         window.frames(3)
     assert loose is window.session.project

@@ -29,7 +29,7 @@ from app.storage.assets import sample_images
 from app.ui.style.theme import PALETTES
 
 FADED = 0.5  # seconds
-TABS = ("Handle", "Layers", "Poses", "Deform", "Distortion", "Mesh", "Cut-out", "Export")
+TABS = ("Handle", "Layers", "Animate", "Shape", "Export", "Measure")
 OPEN = imgui.test_engine.TestAction.open
 TEXTS = ("text", "dim", "accent", "good", "warning", "danger", "anchor")
 SURFACES = ("desk", "panel", "raised", "hovered", "pressed")
@@ -126,13 +126,13 @@ def test_all_tabs_of_a_pose_that_falls_short(window, loose, check):
     solved = loose.layer.poses[:-1]
     resolver = KeyResolver(before=loose.layer, bounds=loose.layer.bounds, poses=solved)
     loose.pending.add(PendingChange(label="Solving the keys", key_resolver=resolver))
-    window.show_tab("Deform")
+    window.show_tab("Shape")
     check("progress")
 
 
 @pytest.mark.usefixtures("loose")
 def test_rows_buttons_and_keys_under_the_pointer(window, check):
-    window.show_tab("Deform")
+    window.show_tab("Shape")
 
     def hold(robot, ref, item):
         robot.set_ref(ref)
@@ -140,7 +140,8 @@ def test_rows_buttons_and_keys_under_the_pointer(window, check):
         robot.mouse_down(0)
         robot.yield_(2)
 
-    for ref, item in (("//Deform", "**/###key 24"), ("//Deform", "**/###Stiff")):
+    for ref, item in (("//Measure", "**/###key 24"), ("//Shape", "**/###Stiff")):
+        window.show_tab(ref.removeprefix("//"))
         window.run(lambda robot, ref=ref, item=item: hold(robot, ref, item))
         check(item)
         window.run(lambda robot: robot.mouse_up(0))
@@ -158,7 +159,7 @@ def test_a_pose_that_no_key_holds_and_a_cut_out(window, loose, check):
     assert loose.unkeyed_pose is not None
     check("unkeyed")
     cut_out_editing.toggle_cut_tool(session, "remove")
-    window.show_tab("Cut-out")
+    window.run(lambda robot: robot.item_click("//###mode/###cut-out settings"))
     check("cut-out")
 
 

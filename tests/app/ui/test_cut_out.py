@@ -179,18 +179,29 @@ def test_alt_and_x_swap_the_brush_and_brackets_change_its_size(window, drawing):
     assert session.tools.mode == "pose"
 
 
-def test_the_key_of_the_brush_brings_its_tab_to_the_front(window, drawing):
-    assert drawing is window.session.project
+def test_cut_out_is_a_mode_with_a_bar_of_its_own(window, drawing):
+    def is_shown(name):
+        found = imgui.internal.find_window_by_name(name)
+        return found is not None and found.active
+
     window.show_tab("Handle")
     window.run(lambda robot: robot.key_press(int(window.Key.x)))
     window.frames(3)
-    assert is_in_front("Cut-out")
-    window.show_tab("Handle")
-    # To put it away brings nothing to the front.
-    window.run(lambda robot: robot.key_press(int(window.Key.escape)))
+    assert (is_shown("###mode"), is_shown("###mode settings")) == (True, False)
+    assert is_in_front("Handle"), "the panel stays as it is"
+
+    def play(robot):
+        robot.item_click("//###mode/###knife tool")
+        robot.item_click("//###mode/###cut-out settings")
+        robot.item_click("//###mode settings/**/###none")
+
+    window.run(play)
+    assert window.session.tools.mode == "knife"
+    assert drawing.layer.cut_out.background == "none"
+    window.run(lambda robot: robot.item_click("//###mode/###done"))
     window.frames(3)
     assert window.session.tools.mode == "pose"
-    assert is_in_front("Handle")
+    assert not is_shown("###mode")
 
 
 def test_a_stroke_that_is_cancelled_is_none(window, drawing):

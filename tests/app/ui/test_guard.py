@@ -5,7 +5,7 @@ from functools import partial
 import pytest
 from imgui_bundle import imgui, implot
 
-from app.document.commands import scene_commands
+from app.document import layer_commands
 from app.editor.actions import dialog_actions, editing, playback
 from app.editor.parts.dialogs import Question
 from app.ui.viewport import viewport
@@ -113,9 +113,9 @@ def test_failing_panel_shows_a_notice_and_is_asked_once(window, parts, reported,
 @pytest.mark.usefixtures("bar")
 @pytest.mark.parametrize("leave_open", LEFT_OPEN)
 def test_failing_panels_leave_nothing_open(window, parts, leave_open):
-    window.show_tab("Distortion")
+    window.show_tab("Measure")
     alpha, colour = imgui.get_style().alpha, imgui.get_style().color_(imgui.Col_.text)
-    for name in ("The panel Timeline", "The panel Viewport", "The panel Distortion", "The guide"):
+    for name in ("The panel Timeline", "The panel Viewport", "The panel Measure", "The guide"):
         parts[name].draw = Broken(leave_open)
     window.frames(3)
     for part in parts.values():
@@ -150,7 +150,7 @@ def test_failing_panel_is_asked_again_when_its_state_changes(window, parts, bar)
     name = "The panel Timeline"
     draw = parts[name].draw
     changes = (
-        partial(editing.edit_document, command=scene_commands.add_marker(3, "beat")),
+        partial(editing.edit_document, command=layer_commands.rename_layer(0, "arm")),
         partial(editing.select_handles, handles=frozenset({bar.layer.handles[0].id})),
         partial(playback.scrub, frame=2),
     )
@@ -245,6 +245,6 @@ def test_failing_step_rests_until_something_changes(window, monkeypatch):
     window.clock.now += guard.PAUSE
     window.frames(1)
     assert broken.asked == 2
-    window.act(editing.edit_document, scene_commands.add_marker(3, "beat"))
+    window.act(editing.edit_document, layer_commands.rename_layer(0, "arm"))
     window.frames(2)
     assert broken.asked == 3

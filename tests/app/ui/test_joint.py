@@ -456,9 +456,10 @@ def test_ghosts_are_in_front_when_the_person_asks(window, nodding):
     np.testing.assert_array_equal(around(window, behind, at), around(window, plain, at))
 
     def put(robot):
-        robot.set_ref("###Timeline")
-        robot.item_click("**/###onion skin")
-        robot.item_click("//$FOCUSED/Draw in front")
+        robot.item_click("//##Left_2123243/###eye")
+        robot.mouse_move("//$FOCUSED/Onion skin frames")
+        robot.yield_(20)
+        robot.item_click("//###Menu_00/Draw in front")
         robot.popup_close_all()
 
     window.run(put)

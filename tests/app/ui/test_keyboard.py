@@ -1,7 +1,5 @@
 """Questions answered by keys, menus closed by them, and keys in words."""
 
-from itertools import chain
-
 import pytest
 from bars import open_bar
 from harness import Harness
@@ -14,7 +12,7 @@ from app.storage.assets import sample_images
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import keys as shortcut_keys
 from app.ui.shortcuts.keys import chords_of, format_chord, format_modified, parse_chords
-from app.ui.shortcuts.table import ACTIONS, MENUS
+from app.ui.shortcuts.table import ACTIONS, MENUS, SUBMENUS
 
 OPEN = imgui.test_engine.TestAction.open
 CTRL, SHIFT, ALT = (
@@ -180,10 +178,15 @@ def test_menus_are_made_from_the_table(window):
         robot.set_ref("##MainMenuBar")
         for menu, groups in MENUS.items():
             robot.menu_click(menu)
-            for spec in chain(*groups):
-                path = f"//$FOCUSED/{'###' if spec.detail else ''}{spec.label}"
-                if robot.item_exists(path):
-                    found.append(spec.label)
+            for group in groups:
+                if group[0] in SUBMENUS:
+                    robot.menu_click(f"{menu}/{SUBMENUS[group[0]]}")
+                for spec in group:
+                    path = f"//$FOCUSED/{'###' if spec.detail else ''}{spec.label}"
+                    if robot.item_exists(path):
+                        found.append(spec.label)
+                if group[0] in SUBMENUS:
+                    robot.menu_click(menu)
             robot.popup_close_all()
 
     window.run(look)
@@ -191,19 +194,19 @@ def test_menus_are_made_from_the_table(window):
 
 
 def test_greyed_entries_tell_what_is_on_without_a_project(window):
-    window.act(viewing.toggle_overlay, "wireframe")
+    window.act(viewing.toggle_overlay, "paths")
     checked = {}
 
     def look(robot):
         robot.set_ref("##MainMenuBar")
         robot.menu_click("View")
-        for label in ("Wireframe", "Handles", "Outline"):
+        for label in ("Motion paths", "Handles", "Outline"):
             checked[label] = robot.item_is_checked(f"//$FOCUSED/{label}")
             assert robot.item_info(f"//$FOCUSED/{label}").item_flags & imgui.ItemFlags_.disabled
         robot.popup_close_all()
 
     window.run(look)
-    assert checked == {"Wireframe": True, "Handles": True, "Outline": False}
+    assert checked == {"Motion paths": True, "Handles": True, "Outline": False}
     assert not ACTIONS["Loop"].is_active(window.session)
 
 
@@ -261,10 +264,10 @@ def test_recent_files_that_are_gone_are_marked_and_taken_off_by_a_click(window, 
 @pytest.mark.usefixtures("loose")
 def test_no_frame_stays_around_a_button_when_a_question_is_gone(window):
     def press_a_button(robot):
-        robot.set_ref("//Deform")
+        robot.set_ref("//Measure")
         robot.item_click("**/###key 24")
 
-    window.show_tab("Deform")
+    window.show_tab("Measure")
     window.run(press_a_button)
     imgui.get_io().add_mouse_pos_event(5.0, 795.0)
     window.settle()

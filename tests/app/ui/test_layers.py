@@ -979,8 +979,8 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
     window.act(replace_picture, wall, path)
     window.settle()
     assert scene.document.layer(wall).still
+    window.session.notices.toasts = []  # above what is looked at
     assert pixel(window, 20 + 20j) == (90, 160, 250)
-    window.session.notices.toasts = []
 
 
 def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scene, tmp_path):

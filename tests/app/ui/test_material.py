@@ -22,7 +22,7 @@ ENDS = (0, 1)
 def tab(window, bent):
     """The bent bar, with the tab in front that shows its material."""
     playback.scrub(window.session, 0)
-    window.show_tab("Material")
+    window.show_tab("Shape")
     window.settle()
     return bent
 
@@ -138,7 +138,7 @@ def test_the_drawing_is_tinted_as_long_as_the_tab_is_in_front(window, tab):
     vertices = tab.layer_runtime.shown.mesh.domain.mesh.vertices
     assert values[np.abs(vertices - middle(tab)).argmin()] > 0.2
     assert abs(values[np.abs(vertices - vertices.real.min()).argmin()]) < 0.05
-    window.show_tab("Deform")
+    window.show_tab("Layers")
     window.frames(2)
     assert window.session.display.tint is None
     viewing.set_tint(window.session, "depth")

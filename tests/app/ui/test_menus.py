@@ -157,7 +157,8 @@ def tooltip_at(window, place, seconds=0.5):
 def test_a_tab_that_is_an_icon_has_its_name_in_a_tooltip(window):
     window.open(sample_images() / "bar.png")
     assert tooltip_at(window, ImVec2(400, 200)) is None
-    tab = imgui.internal.find_window_by_name("###Poses").dc.dock_tab_item_rect
+    window.show_tab("Measure")
+    tab = imgui.internal.find_window_by_name("###Export").dc.dock_tab_item_rect
     assert tooltip_at(window, tab.get_center()) is not None
 
 

@@ -62,7 +62,7 @@ def test_a_left_draft_is_kept_and_the_panel_says_so(window, loose, monkeypatch, 
         move_tool.toggle_move_tool(session)
     texts = []
     monkeypatch.setattr(tab, "small_text", lambda _look, text, *_: texts.append(text))
-    window.show_tab("Motion")
+    window.show_tab("Animate")
     window.frames(3)
     assert any(text.endswith("are kept.") for text in texts)
     preset_setup.begin_motion_setup(session)

@@ -82,10 +82,10 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     before = project.document
     # Whatever tab was in front, the motion's own comes there.
     window.show_tab("Handle")
-    entry = "//##MainMenuBar/Motion/Apply motion preset…"
+    entry = "//##MainMenuBar/Animate/Apply motion preset…"
     window.run(lambda robot: robot.menu_click(entry))
     window.frames(4)
-    assert is_in_front("Motion")
+    assert is_in_front("Animate")
     assert (window.session.tools.motion_setup.kind, window.session.tools.motion_setup.motion) == (
         "biped-side",
         "walk",
@@ -97,7 +97,7 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     )
     preset_setup.set_motion_parameters(window.session, size=0.2, speed=4.0)
     assert project.document is before, "nothing is done to it yet"
-    click(window, "//Motion/**/###give")
+    click(window, "//Animate/**/###give")
     arrive(window, project)
     assert project.layer.motions, [toast.text for toast in window.session.notices.toasts]
     assert project.timeline.playhead.since is not None, "it plays"
@@ -123,7 +123,7 @@ def test_joints_are_dragged_left_out_and_put_back(window, child):
     press(window, window.session.tools.motion_setup.joints["head"])
     window.run(lambda robot: robot.key_press(int(window.Key.delete)))
     assert "head" not in window.session.tools.motion_setup.joints
-    click(window, "//Motion/**/joint head")
+    click(window, "//Animate/**/joint head")
     assert "head" in window.session.tools.motion_setup.joints
     for _ in range(4):
         window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl | window.Key.z)))
@@ -227,7 +227,7 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
     )
     apply_motion.apply_motion_preset(window.session)
     assert ghost.motion_job is None
-    click(window, "//Motion/**/Replace edits")
+    click(window, "//Animate/**/Replace edits")
     assert not preset_setup.apply_motion_disabled_reason(window.session, ghost)
 
 

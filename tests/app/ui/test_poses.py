@@ -127,10 +127,10 @@ def test_only_the_selected_handles_are_pasted_flipped(window, project):
 
 def test_poses_are_kept_clicked_named_and_deleted(window, project, tmp_path):
     before = project.document
-    window.show_tab("Poses")
+    window.show_tab("Animate")
 
     def name(robot):
-        robot.set_ref("###Poses")
+        robot.set_ref("###Animate")
         robot.item_click("**/###Save pose")
         robot.yield_(2)
         robot.item_click("**/pose Pose 1", 1)
@@ -144,7 +144,7 @@ def test_poses_are_kept_clicked_named_and_deleted(window, project, tmp_path):
     go(window, 30)
 
     def click(robot):
-        robot.set_ref("###Poses")
+        robot.set_ref("###Animate")
         robot.item_click("**/pose arm up")
 
     window.run(click)
@@ -154,7 +154,7 @@ def test_poses_are_kept_clicked_named_and_deleted(window, project, tmp_path):
     assert (again.name, again.pose.targets) == (kept.name, kept.pose.targets)
 
     def delete(robot):
-        robot.set_ref("###Poses")
+        robot.set_ref("###Animate")
         robot.item_click("**/pose arm up", 1)
         robot.item_click("//$FOCUSED/Delete")
 
@@ -179,14 +179,14 @@ def step(window):
 def test_a_pose_is_dragged_onto_the_timeline(window, project):
     press(window, SHIFT | int(window.Key.k))
     kept = project.layer.library[0]
-    window.show_tab("Poses")
+    window.show_tab("Animate")
 
     def drag(robot, key=None):
         robot.set_ref("###Timeline")
         first = robot.item_info("**/key 0").rect_full.get_center()
         last = robot.item_info("**/key 12").rect_full.get_center()
         place = ImVec2(first.x + 20 / 12 * (last.x - first.x), first.y)
-        robot.set_ref("###Poses")
+        robot.set_ref("###Animate")
         robot.mouse_move(f"**/pose {kept.name}")
         robot.mouse_down(0)
         robot.mouse_move_to_pos(place)
@@ -208,10 +208,10 @@ def test_a_pose_is_blended_in_by_its_bar_as_one_step(window, project):
     press(window, SHIFT | int(window.Key.k))
     go(window, 0)
     before = project.document
-    window.show_tab("Poses")
+    window.show_tab("Animate")
 
     def drag(robot, share):
-        robot.set_ref("###Poses")
+        robot.set_ref("###Animate")
         bar = robot.item_info("**/blend").rect_full
         y = bar.get_center().y
         robot.mouse_move_to_pos(ImVec2(bar.min.x + 3, y))
@@ -236,10 +236,11 @@ def test_a_pose_is_blended_in_by_its_bar_as_one_step(window, project):
 
 
 def test_the_axis_is_entered_shown_and_put_back(window, project):
-    window.show_tab("Poses")
+    window.show_tab("Animate")
 
     def enter(robot):
-        robot.set_ref("###Poses")
+        robot.set_ref("###Animate")
+        robot.item_open("**/###flip")
         robot.item_click("**/##axis")
         robot.item_click("**/##axis x")
         robot.key_chars_replace_enter("70")
@@ -247,7 +248,7 @@ def test_the_axis_is_entered_shown_and_put_back(window, project):
     window.run(enter)
     assert project.layer.axis == 70
     assert flipping.is_mirror_axis_shown(window.session, window.session.project)
-    window.run(lambda robot: robot.item_click("//###Poses/Middle"))
+    window.run(lambda robot: robot.item_click("//###Animate/Middle"))
     assert project.layer.mirror is None
     press(window, chords_of(ACTIONS["Mirror axis"])[0])
     assert not flipping.is_mirror_axis_shown(window.session, window.session.project)

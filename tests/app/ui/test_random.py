@@ -139,7 +139,7 @@ NAMED = [name for name in ACTIONS if name not in {*LEAVING, "Manual", "Your firs
 BOUND = [
     key for name, binding in ACTIONS.items() if name not in LEAVING for key in chords_of(binding)
 ]
-TABS = ("Handle", "Layers", "Deform", "Distortion", "Mesh", "Cut-out", "Export")
+TABS = ("Handle", "Layers", "Animate", "Shape", "Export", "Measure")
 WIDGETS = (
     *("button", "invisible_button", "selectable", "checkbox", "begin_combo", "slider_int"),
     *("menu_item", "menu_item_simple", "input_text", "input_int", "input_float"),

@@ -126,17 +126,17 @@ def test_screenshots_of_the_main_states(window, dragon, save):
     viewing.toggle_overlay(session, "onion")
     playback.seek(session, 16)
     viewing.show_heat_map(session, "sigma_b")
-    window.show_tab("Distortion")
+    window.show_tab("Measure")
     heat = save("heat-map")
     is_drawn = np.abs(in_viewport(posing_) - in_viewport(heat)).max(axis=2) > 12
     assert is_drawn.mean() > 0.1  # all of the dragon, and nothing around it
     assert is_drawn.mean() < 0.5
     ramp = heat_colormap()[::16].astype(int)
-    panel = heat[60:200, 915:1270]
+    panel = heat[60:200, 980:1270]
     missing = [tone for tone in ramp if (np.abs(panel - tone).max(axis=2) < 10).sum() < 3]
     assert len(missing) <= 2
     # Two limits; their lines may lie between two rows of pixels.
-    assert near(heat[280:480, 915:1270], palette.danger, 45).sum() > 300
+    assert near(heat[280:560, 980:1270], palette.danger, 45).sum() > 300
 
     viewing.show_heat_map(session, "none")
     window.show_tab("Export")
@@ -156,8 +156,8 @@ def test_screenshots_of_the_main_states(window, dragon, save):
         tone="error",
     )
     error = save("error")
-    assert near(error[600:, 900:], palette.danger).sum() > 100
-    assert near(error[600:, 900:], palette.raised).mean() > 0.05
+    assert near(error[500:650, 40:440], palette.danger).sum() > 100
+    assert near(error[500:650, 40:440], palette.raised).mean() > 0.05
     assert not near(posing_[600:, 900:], palette.danger).any()
 
     session.notices.toasts = []

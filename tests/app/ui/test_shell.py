@@ -62,7 +62,7 @@ def test_scale_takes_docked_panels_along(window):
     window.frames(3)
     scale = window.session.settings.preferences.scale
     assert _docked("Timeline").size.y == pytest.approx(scale * timeline, abs=1)
-    assert _docked("Handle").size.x == pytest.approx(scale * tabs, abs=1)
+    assert tabs < _docked("Handle").size.x < scale * tabs, "the drawing keeps most of the room"
     viewing.shrink_interface(window.session)
     window.frames(3)
     assert _docked("Timeline").size.y == pytest.approx(timeline, abs=1)
@@ -102,10 +102,10 @@ def test_docked_panels_leave_room_in_a_small_window(window):
 def test_all_tabs_fit_and_the_one_in_front_has_its_title(window, size, scale):
     window.again(Harness.open, sample_images() / "ring.png")
     window.resize(size, scale)
-    for title in ("Handle", "Distortion"):
+    for title in ("Handle", "Shape"):
         window.show_tab(title)
         bar = _docked(title).tab_bar
-        assert len(bar.tabs) > 6
+        assert len(bar.tabs) == 5
         assert bar.width_all_tabs_ideal <= bar.bar_rect.get_width()
         name = imgui.internal.find_window_by_name(f"###{title}").name.split("###")[0]
         assert name == title
@@ -116,7 +116,7 @@ def test_tabs_have_their_names_as_far_as_there_is_room(window):
     window.again(Harness.open, sample_images() / "ring.png")
     window.show_tab("Export")
     named = []
-    for width in (430, 480, 520, 640, 800, 900):
+    for width in (180, 200, 220, 240, 260, 300):
         node = _docked("Handle")
         imgui.internal.dock_builder_set_node_size(node.id_, ImVec2(width, node.size.y))
         window.frames(4)
@@ -252,7 +252,7 @@ def test_a_tooltip_covers_no_message(window, bar):
 
     def find(robot):
         robot.set_ref("Timeline")
-        places.append(robot.item_info("**/Fit timeline").rect_full.get_center())
+        places.append(robot.item_info("**/Play").rect_full.get_center())
 
     window.run(find)
     imgui.get_io().add_mouse_pos_event(places[0].x, places[0].y)
@@ -260,7 +260,7 @@ def test_a_tooltip_covers_no_message(window, bar):
     windows = [other for other in imgui.get_current_context().windows if other.active]
     toasts = [other.rect() for other in windows if other.name.startswith("##toast")]
     (tooltip,) = (other.rect() for other in windows if other.name.startswith("##Tooltip"))
-    assert len(toasts) == 3
+    assert len(toasts) == 1, "one at a time"
     assert not any(toast.overlaps(tooltip) for toast in toasts)
 
 
@@ -317,7 +317,7 @@ def test_a_drawing_stands_out_from_the_backdrop(window, tmp_path, theme, level, 
     assert seen(100 + 100j) == pytest.approx(level, abs=3)
     paper = seen(10 + 100j)
     if stands_out is None:
-        assert paper == pytest.approx(_level(theme), abs=12)
+        assert paper == pytest.approx(_level(theme), abs=16)
     else:
         assert (paper - level) * np.sign(stands_out) > abs(stands_out)
     viewing.set_backdrop(window.session, "#808080")

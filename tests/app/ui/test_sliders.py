@@ -67,10 +67,10 @@ def exact(project, frame):
 
 def drag(window, path, by):
     """Drag a widget of the tab from its middle by a part of its width and height."""
-    window.show_tab("Poses")
+    window.show_tab("Animate")
 
     def play(robot):
-        robot.set_ref("###Poses")
+        robot.set_ref("###Animate")
         robot.scroll_to_item_y(path)
         box = robot.item_info(path).rect_full
         size = box.max - box.min

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from harness import FRAME
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import ImVec2
 from sound_devices import PERIOD, HandDevice
 from sound_files import sine, sound, wav
 
@@ -24,7 +24,6 @@ from app.editor.layering.pictures import drop_files
 from app.errors import LissomError
 from app.sound import SoundMix, SoundPlayer
 from app.sound.player import LOST
-from app.ui.panel import is_in_front
 
 LAST = 96
 TALK = wav(sine(2.0))
@@ -266,11 +265,11 @@ def test_missing_file_is_found_again(window, spoken, tmp_path):
 
 
 def test_tab_sets_volume_time_and_name(window, spoken):
-    window.act(viewing.show_tab, "Sound")
+    window.act(viewing.show_tab, "Animate")
     window.frames(3)
 
     def play(robot):
-        robot.set_ref("//###Sound")
+        robot.set_ref("//###Animate")
         robot.item_input_value("**/##start", 24.0)
         robot.item_click("**/key volume")
         robot.item_input_value("**/##from", 0.5)
@@ -313,12 +312,12 @@ def test_cues_become_keys_in_one_step_and_their_table_is_edited(window, mouthed,
     assert shown_mouths(mouthed) == keyed
     assert notices(window)[-1] == "4 keys in mouth."
     ah = next(layer.id for layer in mouthed.document.layers if layer.name == "ah")
-    window.act(viewing.show_tab, "Sound")
+    window.act(viewing.show_tab, "Animate")
     window.resize((1280, 1000))
 
     def choose(robot):
-        robot.set_ref("//###Sound")
-        robot.item_click("//###Sound/talk/##drawing of E")
+        robot.set_ref("//###Animate")
+        robot.item_click("//###Animate/talk/##drawing of E")
         robot.item_click("//$FOCUSED/ah")
 
     window.run(choose)
@@ -343,11 +342,11 @@ def test_wrong_cues_change_nothing(window, mouthed, tmp_path):
 def test_switch_opens_with_the_volume(window, mouthed):
     closed = mouthed.document.switch_groups[0].members[0]
     window.act(editing.edit_document, switch_group_commands.choose_at(closed, 0))
-    window.act(viewing.show_tab, "Sound")
+    window.act(viewing.show_tab, "Animate")
     window.frames(3)
 
     def play(robot):
-        robot.set_ref("//###Sound")
+        robot.set_ref("//###Animate")
         robot.item_click("**/###volume")
 
     window.run(play)
@@ -391,21 +390,3 @@ def test_export_tab_leaves_the_sounds_out(window, spoken):
     window.run(play)
     window.resize((1280, 800))
     assert not spoken.document.export.sound
-
-
-@pytest.mark.usefixtures("bent")
-def test_tab_of_sounds_is_there_once_there_is_a_sound(window):
-    window.show_tab("Handle")
-
-    def has_tab():
-        tab = imgui.internal.find_window_by_name("###Sound")
-        return tab is not None and tab.was_active
-
-    assert not has_tab()
-    window.act(editing.edit_document, sound_commands.add_sound(sound(TALK)))
-    window.frames(5)
-    assert has_tab()
-    assert is_in_front("Handle")
-    editing.undo(window.session)
-    window.frames(5)
-    assert not has_tab()

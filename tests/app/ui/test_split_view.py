@@ -152,7 +152,7 @@ def test_side_by_side_each_method_has_half_of_the_viewport(window):
 @pytest.mark.usefixtures("everything")
 def test_both_are_measured_and_the_linear_one_leaves_the_bounds(window, between):
     viewing.toggle_comparison(window.session)
-    window.show_tab("Distortion")
+    window.show_tab("Measure")
     window.settle()
     own, other = between.measured.curves.value, between.measured.comparison_curves.value
     assert own.k_share.max() <= 1 + 1e-6

@@ -7,78 +7,26 @@ import numpy as np
 import pytest
 from documents import altered
 
-from app.document import RUBBERY, DistortionRange
+from app.document import RUBBERY
 from app.document.keyframe import Target
 from app.document.queries.clips import clip_of
-from app.editor.actions import editing, playback
+from app.editor.actions import editing
 from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.work.jobs import Jobs
 from app.errors import LissomError
 from app.motion import InbetweenCache
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.reports.curves import TIMES, measure_curves
-from app.ui.bars.status import describe_pose_limit, list_status_items
-from engine.maps import distortion
-
-
-def facts(window):
-    return [fact.text for fact in list_status_items(window.session)]
-
-
-def test_frame_rate_appears_during_playback(window, loose):
-    """Else nothing is drawn, and their number says nothing of the machine."""
-    del loose
-    assert not any("fps" in fact for fact in facts(window))
-    playback.toggle_play(window.session)
-    window.frames(3)
-    assert re.fullmatch(r"\d+ fps", facts(window)[-1])
-    playback.toggle_play(window.session)
-
-
-def test_without_a_project_there_is_nothing_to_tell(window):
-    assert facts(window) == []
-
-
-def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, loose):
-    window.session.diagnostics.solver_seconds = (
-        0.0064  # the clock of the tests stands still in a job
-    )
-    shown, handles, solver = facts(window)
-    proven = loose.document.layers[0].keys[1].pose.certificate
-    uses = DistortionRange(proven.k, proven.sigma_a, proven.sigma_b).uses(
-        loose.document.layers[0].bounds
-    )
-    most = max(uses, key=lambda use: use.share)
-    word = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}[most.name]
-    assert shown == f"{word} {most.value:.2f}, limit {most.limit:.2f}"
-    assert most.share > 0.01
-    assert handles == "2 handles"
-    assert solver == "pose 6 ms"
-
-
-@pytest.mark.usefixtures("everything")
-def test_inbetweens_show_what_was_measured(window, loose):
-    playback.seek(window.session, 12)
-    window.settle()
-    window.frames(2)
-    shown, *_ = facts(window)
-    halfway = loose.layer_runtime.store.prepared(loose.clip)[0].frame(0.5)
-    fz, fzbar = halfway.fz, halfway.fzbar
-    values = {
-        "Shear": distortion.k(fz, fzbar).max(),
-        "Stretch": distortion.sigma_a(fz, fzbar).max(),
-        "Squeeze": distortion.sigma_b(fz, fzbar).min(),
-    }
-    name, value = shown.split(",")[0].split()
-    assert float(value) == pytest.approx(values[name], abs=0.011)
+from app.ui.bars.status import UPDATES, describe_pose_limit, find_state
 
 
 @pytest.mark.usefixtures("loose")
-def test_a_bound_that_is_reached_warns(window):
-    set_targets(window.session, {1: Target(position=complex(9000, 0))})
-    window.settle()
-    fact = list_status_items(window.session)[0]
-    assert fact.is_warning
-    assert not list_status_items(window.session)[1].is_warning
+def test_status_bar_names_no_job_that_only_updates_the_animation(window, monkeypatch):
+    assert find_state(window.session) is None
+    for kind in UPDATES:
+        monkeypatch.setattr(Jobs, "running_for", lambda _jobs, _seconds, kind=kind: (kind,))
+        state = find_state(window.session)
+        assert (state.text, state.label) == ("Updating the animation…", "Cancel")
 
 
 def test_held_back_pull_appears_with_its_remedy(window, loose):
@@ -89,9 +37,9 @@ def test_held_back_pull_appears_with_its_remedy(window, loose):
     layer = loose.layer
     lag = layer.target_errors(layer.key(24).pose)[1]
     message = describe_pose_limit(window.session)
-    assert re.fullmatch(
-        r"Stretch limit reached – handle \d is \d+ px short(, 1 more too)?", message
-    ), message
+    assert re.fullmatch(r"At its limit · handle \d is \d+ px short(, 1 more too)?", message), (
+        message
+    )
     steps = loose.history.undo_label
 
     def loosen(robot):

@@ -69,6 +69,9 @@ def project(window, _stretched):
     return window.session.project
 
 
+MORE = "**/###more of shape"
+
+
 @pytest.fixture
 def tab(window):
     """A function that lets the robot play in a tab, and waits for what that leads to."""
@@ -150,12 +153,12 @@ def enter_bound(robot, name, value):
 def test_one_word_sets_all_three_bounds(window, project, tab):
     assert project.layer.bounds == NATURAL.bounds, "new drawings are natural"
     before = project.document
-    tab("Deform", lambda robot: robot.item_click("**/stretch/###Rubbery"))
+    tab("Shape", lambda robot: robot.item_click("**/stretch/###Rubbery"))
     assert project.layer.bounds == RUBBERY.bounds
     assert project.history.undo_label == "Set limits"
     editing.undo(window.session)
     assert project.document is before
-    tab("Deform", lambda robot: robot.item_click("**/stretch/###Stiff"))
+    tab("Shape", lambda robot: robot.item_click("**/stretch/###Stiff"))
     assert project.layer.bounds == STIFF.bounds
     assert all(project.layer.is_proven(key.pose) for key in project.layer.keys)
 
@@ -164,7 +167,7 @@ def test_tighter_bounds_bring_keys_in_as_one_step(window, project, tab):
     before = project.document
     reached = largest(project, "k")
     bound = round(0.6 * reached, 2)
-    tab("Deform", lambda robot: enter_bound(robot, "k", bound))
+    tab("Shape", lambda robot: enter_bound(robot, "k", bound))
     assert project.layer.bounds.k == pytest.approx(bound, abs=1e-6)
     assert largest(project, "k") <= bound
     assert all(key.pose.certificate.is_certified for key in project.layer.keys)
@@ -188,20 +191,20 @@ def test_knob_that_is_dragged_sets_the_bound_once(window, project, tab):
         assert project.layer_setup.previewed_limits.sigma_a > NATURAL.bounds.sigma_a
         robot.mouse_up(0)
 
-    tab("Deform", drag)
+    tab("Shape", drag)
     assert project.layer.bounds.sigma_a > NATURAL.bounds.sigma_a
     assert project.layer_setup.previewed_limits is None
     editing.undo(window.session)
     assert project.document is before
     editing.redo(window.session)
-    tab("Deform", lambda robot: robot.item_click("**/stretch/###Natural"))
+    tab("Shape", lambda robot: robot.item_click("**/stretch/###Natural"))
     assert project.layer.bounds == NATURAL.bounds
 
 
 def test_pose_that_no_handle_holds_is_brought_within_the_bounds(window, project, tab):
     remove_handles(window.session, frozenset({0, 1}))
     bound = round(0.5 * largest(project, "k"), 2)
-    tab("Deform", lambda robot: enter_bound(robot, "k", bound))
+    tab("Shape", lambda robot: enter_bound(robot, "k", bound))
     certificate = project.layer.key(24).pose.certificate
     assert certificate.is_certified
     assert certificate.k <= bound + 1e-6
@@ -211,11 +214,11 @@ def test_cancelled_solving_changes_nothing(project, window):
     before = project.document
 
     def act(robot):
-        robot.set_ref("//Deform")
+        robot.set_ref("//Shape")
         robot.item_click("**/Re-pose all keys")
         robot.item_click("**/###stop")
 
-    window.show_tab("Deform")
+    window.show_tab("Shape")
     # A fast machine would be done before the button is found.
     with window.session.jobs.held(SOLVING_KEYS):
         window.run(act)
@@ -230,7 +233,7 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
         robot.item_click("**/heat map/###sigma_a")
         robot.item_click("**/curves/###absolute")
 
-    tab("Distortion", act)
+    tab("Measure", act)
     assert window.session.display.overlays.heat_map == "sigma_a"
     curves = project.measured.curves.value
     assert curves.clip == project.clip
@@ -246,7 +249,7 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
 
 @pytest.mark.usefixtures("everything")
 def test_curves_of_an_older_document_are_not_kept(window, project, tab):
-    tab("Distortion", lambda _: None)
+    tab("Measure", lambda _: None)
     editing.edit_document(
         window.session, channel_commands.move_keys({pose_channel(0): frozenset({24})}, 4)
     )
@@ -271,7 +274,7 @@ def test_curves_are_saved_as_picture_and_table(window, tab, tmp_path):
                 window.session.dialogs.current, folder=tmp_path
             )
 
-        tab("Distortion", act)
+        tab("Measure", act)
         window.run(lambda robot: robot.item_click("//###dialog/Save"))
         window.settle()
     table = np.genfromtxt(tmp_path / "disc distortion.csv", delimiter=",", names=True)
@@ -286,10 +289,11 @@ def test_outline_cage_and_mesh_are_shown(window, tab):
     before = window.picture()
 
     def act(robot):
+        robot.item_open(MORE)
         for name in ("Outline", "Cage", "Mesh"):
             robot.item_click(f"**/{name}")
 
-    tab("Mesh", act)
+    tab("Shape", act)
     overlays = window.session.display.overlays
     assert (overlays.outline, overlays.cage, overlays.wireframe) == (True, True, True)
     assert window.picture() != before
@@ -299,11 +303,12 @@ def test_rebuilt_domain_keeps_handles_and_poses_as_one_step(window, project, tab
     before = project.document
 
     def act(robot):
+        robot.item_open(MORE)
         robot.item_click("**/detail/###normal")
         robot.item_input_value("**/##triangles", 4000.0)
         robot.item_click("**/###rebuild")
 
-    tab("Mesh", act)
+    tab("Shape", act)
     after = project.document
     assert after.layers[0].meshing == Meshing(triangles=4_000, detail="normal")
     counts = [len(document.layers[0].domain.mesh.triangles) for document in (before, after)]
@@ -329,10 +334,11 @@ def test_rebuilt_domain_keeps_a_pose_that_no_handle_holds(window, project, tab):
     remove_handles(window.session, frozenset({0, 1}))
 
     def act(robot):
+        robot.item_open(MORE)
         robot.item_input_value("**/##triangles", 4000.0)
         robot.item_click("**/###rebuild")
 
-    tab("Mesh", act)
+    tab("Shape", act)
     assert project.layer.meshing.triangles == 4_000
     certificate = project.layer.key(24).pose.certificate
     assert certificate.k == pytest.approx(STRETCH, rel=0.01)
@@ -345,10 +351,11 @@ def test_error_appears_when_the_domain_cannot_be_built(window, project, tab):
     )
 
     def act(robot):
+        robot.item_open(MORE)
         robot.item_click("**/detail/###fine")
         robot.item_click("**/###rebuild")
 
-    tab("Mesh", act)
+    tab("Shape", act)
     assert project.document is before
     assert project.key_resolver is None
     assert [toast.tone for toast in window.session.notices.toasts] == ["error"]
@@ -548,7 +555,7 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
             imgui, name, lambda *words, draw=draw: (written.append(words[-1]), draw(*words))[-1]
         )
     reason = "held back by the other handles and the shape's stiffness"
-    for title in ("Handle", "Deform"):
+    for title in ("Handle", "Measure"):
         written.clear()
         window.show_tab(title)
         text = " ".join(written).lower()

@@ -83,7 +83,7 @@ def test_taps_on_one_place_count_too(window, ruler):
 
 @pytest.mark.usefixtures("bar")
 def test_tabs_take_a_tap(window):
-    names = ("Layers", "Export", "Handle", "Mesh")
+    names = ("Layers", "Export", "Handle", "Shape")
     panels = {name: f"###{name}" for name in names}
     window.frames(2)
     for name, panel in panels.items():

@@ -30,6 +30,8 @@ from app.editor.actions.timing.channel_keys import (
     toggle_camera_view,
 )
 from app.editor.parts.timeline import TimeRangeView
+from app.editor.parts.viewport_state import fit_view_around
+from app.motion import BoundingBox
 from app.ui.bars.status import describe_motion_limit
 from app.ui.style.theme import PALETTES
 from app.ui.timeline import segments
@@ -214,7 +216,7 @@ def test_drag_past_the_end_makes_the_animation_longer(window, project, play):
 
 def test_several_keys_move_together(window, project, play):
     def box(hand):
-        hand.go_to(8, hand.place("ground").y + 35)
+        hand.go_to(8, hand.place("ground").y + 15)
         hand.robot.mouse_down(0)
         hand.go_to(16)
         hand.go_to(30)
@@ -364,9 +366,7 @@ def test_keys_that_the_limits_slow_down_come_with_a_remedy(window, project):
     project.history.do(key_commands.replace_key_pose(0, 12, squeezed))
     project.history.do(command)
     window.settle()
-    assert describe_motion_limit(window.session) == (
-        "The motion stops at frame 12 to keep within the stretch limit"
-    )
+    assert describe_motion_limit(window.session) == ("At its limit · the motion stops at frame 12")
     resolving.relax_motion_limits(window.session)
     window.settle()
     assert project.layer.bounds != tight
@@ -541,7 +541,12 @@ def test_keys_that_fall_short_are_known(project):
 
 
 def test_last_frame_and_speed_are_typed(window, project, play):
-    play(lambda hand: hand.robot.item_input_value("##last", 90))
+    def type_last(hand):
+        hand.robot.item_click("more")
+        hand.robot.item_input_value("//$FOCUSED/###last", 90)
+        hand.robot.popup_close_all()
+
+    play(type_last)
     assert project.document.frames == FrameRange(0, 90)
     play(lambda hand: hand.robot.item_input_value("##fps", 12))
     assert project.document.fps == 12
@@ -789,7 +794,10 @@ def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, proje
     window.settle()
     assert camera_of(project) == [(0, 1), (30, 2)]
     assert camera_at(project.document, 30).centre == 60 + 70j
-    looked = project.view_on(window.session.display.screen)
+    window.frames(10)  # the lane of the camera takes room from the drawing
+    screen = window.session.display.screen
+    whole = fit_view_around(BoundingBox(0j, complex(*canvas)), screen)
+    looked = replace(project.view_on(screen), scale=2 * whole.scale)
     viewing.set_view(window.session, None)
     toggle_camera_view(window.session)
     again = project.view_on(window.session.display.screen)
@@ -848,5 +856,6 @@ def test_what_the_camera_leaves_out_is_dimmed_in_the_viewport(window, project):
     near = replace(project.document.camera[0].value, zoom=2.0)
     editing.edit_document(window.session, channel_commands.set_key(Channel(CAMERA), 0, near))
     window.settle()
-    assert brightness(inside) == before[0]
+    # The lane of the camera takes room: the place is on another pixel.
+    assert abs(brightness(inside) - before[0]) < 6
     assert abs(brightness(outside) - before[1]) > 20

@@ -721,19 +721,14 @@ def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):
     assert not find_auto_pinned(bent.layer_runtime.shown)
 
 
-@pytest.mark.parametrize("is_narrow", [False, True])
-def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent, is_narrow):
+def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent):
     before = bent.document
     window.act(playback.seek, 12)
     window.settle()
 
     def switch():
         def act(robot):
-            if is_narrow:
-                robot.menu_click("//##MainMenuBar/Keys/In-betweens/Auto-pin handles")
-            else:
-                robot.item_click("//###Timeline/##variant")
-                robot.item_click("//##Combo_00/Auto-pin handles")
+            robot.menu_click("//##MainMenuBar/View/Measure/In-betweens/Auto-pin handles")
 
         window.run(act)
         window.settle()

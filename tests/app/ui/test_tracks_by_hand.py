@@ -167,7 +167,7 @@ def test_targets_out_of_reach_stay_the_targets(window, keyed):
     assert_allclose(targets[END], goal, atol=PIXEL)
     assert abs(place_of(keyed) - goal) > 20
     assert shown.correction.is_limited
-    assert describe_pose_limit(window.session).startswith("Stretch limit reached – handle 2 is ")
+    assert describe_pose_limit(window.session).startswith("At its limit · handle 2 is ")
     assert find_off_target(keyed, shown)[END] == targets[END], "a dashed line leads there"
 
 
@@ -363,8 +363,9 @@ def test_a_recording_is_as_smooth_as_the_hand_was_on_the_screen(window, bent):
     """A picture that is seen at a quarter of the size trembles by four times as many pixels."""
     playback.scrub(window.session, 0)
     window.settle()
+    scale = bent.view_on(window.session.display.screen).scale
     record(window, bent, CIRCLE)
-    take, scale = bent.timeline.recording, bent.view_on(window.session.display.screen).scale
+    take = bent.timeline.recording
     assert take.scale == scale
     keys = {}
     for factor in (0.1, 1.0, 10.0):

@@ -151,12 +151,12 @@ def test_what_cannot_be_pasted_says_why_in_its_menu_and_at_its_keys(window, proj
 
 def test_the_library_offers_poses_of_layers_with_the_same_names(window):
     press(window, SHIFT | int(window.Key.k))
-    window.show_tab("Poses")
+    window.show_tab("Animate")
     choose(window, "body")
     window.frames(3)
 
     def offered(robot):
-        robot.set_ref("###Poses")
+        robot.set_ref("###Animate")
         return robot.item_exists("**/pose Pose 1")
 
     found = []
@@ -165,21 +165,22 @@ def test_the_library_offers_poses_of_layers_with_the_same_names(window):
     go(window, 10)
     window.run(lambda robot: found.append(offered(robot)))
     assert found == [False, True]
-    window.run(lambda robot: (robot.set_ref("###Poses"), robot.item_click("**/pose Pose 1")))
+    window.run(lambda robot: (robot.set_ref("###Animate"), robot.item_click("**/pose Pose 1")))
     window.settle()
     near = ways(window, "near leg", 0)
     np.testing.assert_allclose(ways(window, "far leg", 10), near, rtol=0, atol=1e-6)
 
 
 def test_pairs_are_edited_where_poses_are_flipped(window, project):
-    window.show_tab("Poses")
+    window.show_tab("Animate")
     for name, to in (("near leg", "one"), ("far leg", "two")):
         editing.edit_document(
             window.session, layer_commands.rename_layer(layer(window, name).id, to)
         )
 
     def enter(robot, text):
-        robot.set_ref("###Poses")
+        robot.set_ref("###Animate")
+        robot.item_open("**/###flip")
         robot.item_click("**/##pairs")
         robot.key_chars_replace_enter(text)
 
@@ -191,7 +192,7 @@ def test_pairs_are_edited_where_poses_are_flipped(window, project):
     assert project.document.pairs == (("L", "R"), ("one", "two"))
     press(window, COPY_ALL)
     go(window, 12)
-    window.run(lambda robot: (robot.set_ref("###Poses"), robot.item_click("**/###Paste swapped")))
+    window.run(lambda robot: (robot.set_ref("###Animate"), robot.item_click("**/###Paste swapped")))
     window.settle()
     near = ways(window, "one", 0)
     np.testing.assert_allclose(ways(window, "two", 12), near, rtol=0, atol=1e-6)

@@ -35,7 +35,7 @@ from app.ui.viewport import marks
 from engine.maps.bounds import Bounds
 
 BAR = sample_images() / "bar.png"
-TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
+TABS = ("Handle", "Layers", "Animate", "Shape", "Export", "Measure")
 
 
 def place_of(project, identity):
@@ -379,11 +379,11 @@ def test_handle_out_of_reach_is_reported_and_freed(window, loose, monkeypatch):
 
 
 def test_bound_that_bounds_nothing_is_refused_in_words(window, loose):
-    window.show_tab("Deform")
+    window.show_tab("Shape")
     before = loose.document
 
     def enter(robot):
-        robot.set_ref("//Deform")
+        robot.set_ref("//Shape")
         robot.item_open("**/Details")
         robot.item_input_value("**/##bound k", -3.0)
 
@@ -642,11 +642,11 @@ def test_saved_work_is_not_kept_as_unsaved(window, loose, tmp_path):
 @pytest.mark.usefixtures("everything")
 def test_click_in_the_plot_goes_to_its_frame(window, loose):
     window.act(playback.seek, 0)
-    window.show_tab("Distortion")
+    window.show_tab("Measure")
     window.settle()
 
     def click(robot):
-        robot.set_ref("//Distortion")
+        robot.set_ref("//Measure")
         box = robot.item_info("##over time k").rect_full
         robot.mouse_move_to_pos(box.get_center())
         robot.mouse_click(0)

@@ -13,7 +13,7 @@ from app.editor.actions.project_files import saving
 from app.errors import EXPECTED_ERRORS
 from app.ui.shortcuts.table import ACTIONS
 
-TABS = ("Handle", "Layers", "Poses", "Motion", "Deform", "Material", "Mesh", "Export")
+TABS = ("Handle", "Layers", "Animate", "Shape", "Export", "Measure")
 DRAWN = 3  # verbs of each document after which the window is drawn
 SEEDS = (*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 16)))
 EACH = 4  # documents of a seed

@@ -30,7 +30,6 @@ from engine.geometry import box_diagonal, distance_to_segments
 
 WRITING = JobKind(_("Saving the mask"), _("The mask was not saved"))
 MASKS = (".png",)
-PANEL = "Cut-out"  # the panel with the settings of the brush
 SMALLEST_BRUSH, LARGEST_BRUSH = 1.0, 1000.0  # pixels of the picture
 BRUSH_STEP = 1.25
 FIRST_BRUSH = 0.03  # of the picture's longer side
@@ -44,10 +43,15 @@ def toggle_cut_tool(session: Session, tool: CutTool | None) -> None:
         session.tools.toggle(tool or "pose")
         if session.tools.is_cutting:
             playback.stop_playback(session)
-            session.display.focus_panel(PANEL)
 
 
-@named_action(_("Cut-out brush"), "X", active=lambda session: session.tools.is_cutting)
+@named_action(
+    _("Cut out"),
+    "X",
+    icon="SCISSORS",
+    hint=_("Cut the subject out of its picture: by colour, brush, knife or mask"),
+    active=lambda session: session.tools.is_cutting,
+)
 def toggle_cut_brush(session: Session) -> None:
     """Select the brush that removes; if a brush is selected, swap keep and remove."""
     toggle_cut_tool(session, "keep" if session.tools.mode == "remove" else "remove")
@@ -55,7 +59,7 @@ def toggle_cut_brush(session: Session) -> None:
 
 UNLESS_BRUSH = unless(
     lambda session, _: session.tools.mode in {"keep", "remove", "stiff", "soft", "normal"},
-    _("Select a brush in the Cut-out or Material tab first."),
+    _("Select a brush first: Cut out, or Make parts stiff."),
 )
 
 

@@ -43,7 +43,7 @@ def add_inspected_sound(session: Session, project: Project, inspected: Inspected
     start = playback.current_frame(session, project)
     editing.edit_document(session, sound_commands.add_sound(new_sound(inspected, start)))
     project.selection.select_sound(project.document.sounds[-1].name)
-    session.display.focus_panel("Sound")
+    session.display.focus_panel("Animate")
     file = inspected.file
     text = _("Added {name}: {seconds:.1f} s. The project keeps its {size:,.0f} KB.")
     known = {"name": file.name, "seconds": file.seconds, "size": file.size / 1000}

@@ -15,7 +15,7 @@ from app.editor.layering.layer_selection import toggle_tree_row
 from app.editor.layering.switches import key_switch
 from app.render import Thumbnail
 from app.texts import _
-from app.ui.style.drawing import draw_centred_text
+from app.ui.style.drawing import draw_centred_text, show_picture
 from app.ui.style.theme import SMALL, Look, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
@@ -23,7 +23,6 @@ from app.ui.style.widgets import (
     is_hovered_or_held,
     push_text_size,
     shorten_text,
-    show_picture,
 )
 from engine.arrays import Bytes
 

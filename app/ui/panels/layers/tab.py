@@ -5,15 +5,16 @@ from imgui_bundle import imgui
 from app.document import suggest_switch_groups
 from app.editor import Action, Project, Session, do
 from app.editor.actions import dialog_actions, playback
-from app.editor.actions.layer_setup import resolving
+from app.editor.actions.layer_setup import cut_out_editing, resolving
 from app.editor.layering.switches import create_switch, dismiss_switch_suggestion
 from app.errors import few_notices
 from app.texts import _, message_of
 from app.ui.panels.layers.row import SmallPictures
 from app.ui.panels.layers.settings import draw_layer_settings
 from app.ui.panels.layers.tree import draw_layer_tree
+from app.ui.shortcuts.widgets import draw_action_text_button
 from app.ui.style.theme import Look
-from app.ui.style.widgets import heading, progress_bar, shorten_text, small_text
+from app.ui.style.widgets import FILL, heading, progress_bar, shorten_text, small_text
 
 _FOLD = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_avail_width
 
@@ -37,7 +38,8 @@ def draw_layers_panel(
         actions.append(do(resolving.cancel_solving_keys))
     heading(look, shorten_text(project.layer.name, imgui.get_content_region_avail().x))
     frame = playback.current_frame(session, project)
-    return actions + draw_layer_settings(project, look, project.layer, frame)
+    actions += draw_layer_settings(project, look, project.layer, frame)
+    return actions + draw_action_text_button(session, cut_out_editing.toggle_cut_brush, FILL)
 
 
 def _summary(look: Look, project: Project) -> list[Action]:

@@ -10,7 +10,7 @@ from app.ui.style.theme import colour_u32
 from app.ui.style.widgets import draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.timeline.layout import PREVIEW, TimelineLayout, draw_time_tag
 
-GRIP = 0.55  # em: half the hit width of an end
+GRIP, TALLEST = 0.55, 1.35  # em: half the hit width of an end, height of the last end
 BEGINS_HERE = _("Playback begins here: drag, or double-click to play all frames")
 ENDS_HERE = _("Playback ends here: drag, or double-click to play all frames")
 
@@ -100,7 +100,9 @@ def _animation_end(bands: TimelineLayout) -> list[Action]:
     if not bands.shows(x - em, x + 2 * em):
         return []
     low = ImVec2(x, bands.track_top)
-    high = ImVec2(x + 0.75 * em, bands.track_top + 1.35 * em)
+    # In a low row it leaves room for the grips of repeats below.
+    height = min(TALLEST * em, 0.3 * (bands.track_bottom - bands.track_top))
+    high = ImVec2(x + 0.75 * em, bands.track_top + height)
     bands.button("animation end", ImVec2(x - 0.2 * em, low.y), ImVec2(x + 1.1 * em, high.y))
     hot = is_hovered_or_held()
     if hot:
@@ -121,8 +123,8 @@ def _animation_end(bands: TimelineLayout) -> list[Action]:
     for part in (0.28, 0.5):
         line = x + part * em
         draw_list.add_line(
-            ImVec2(line, low.y + 0.4 * em),
-            ImVec2(line, high.y - 0.4 * em),
+            ImVec2(line, low.y + 0.3 * height),
+            ImVec2(line, high.y - 0.3 * height),
             colour_u32(palette.desk),
         )
     draw_list.pop_clip_rect()

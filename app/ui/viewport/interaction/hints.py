@@ -72,8 +72,9 @@ def draw_badges(
     top = corner + ImVec2(room.x / 2, look.em)
     if project.unkeyed_pose is not None and not session.tools.is_cutting:
         return _draw_pill(look, _("Unkeyed pose"), top, room.x, keys.insert_key_in_row)
+    has_bar = session.tools.is_cutting or session.tools.motion_setup is not None
     mode = next(filter(None, (tool.mode(session, project) for tool in tools_of(session))), "")
-    if mode:
+    if mode and not has_bar:
         end = shown_keys(move_tool.return_to_posing)
         text = _("{mode}: {keys} goes back to posing").format(mode=mode, keys=end)
         return _draw_pill(look, text, top, room.x)

@@ -15,7 +15,7 @@ from app.rigging import MOTIONS, Parameters, guess_kind
 from app.texts import _, ngettext
 
 MOST_ROUNDS = 50
-PANEL = "Motion"
+PANEL = "Animate"
 LINKS = 6
 
 

@@ -1,7 +1,7 @@
 """Stiff and soft parts of the drawing: brush, bones, and an update of existing keys."""
 
 import numpy as np
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import FOLDING_ANGLE, Bone, Layer, stiffness_commands
 from app.editor import Action, Project, Session, StiffnessTool, do
@@ -9,12 +9,13 @@ from app.editor.actions import editing, viewing
 from app.editor.actions.layer_setup import cut_out_editing, resolving, stiffness_editing
 from app.editor.actions.posing.pose_drag import pose_at_playhead
 from app.texts import _
-from app.ui.panels.layer_setup.cut_out import BRUSHES, brush_hint
+from app.ui.panels.modes.cut_out import BRUSHES, brush_hint
 from app.ui.style.sliders import Scale, slider
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
     align_right,
     draw_tooltip,
+    fitted_button,
     heading,
     icon_button,
     label,
@@ -31,23 +32,22 @@ AMOUNTS = Scale(
     left=1 / stiffness_editing.SOFTEST, right=stiffness_editing.STRONGEST, logarithmic=True
 )
 SOFTNESSES = Scale(left=0.0, right=1.0)
-TOOLS: tuple[tuple[StiffnessTool, str, str, str], ...] = (
-    ("stiff", icons.ICON_FA_CUBE, _("Stiff"), _("Brush over parts that bend and stretch less")),
-    ("soft", icons.ICON_FA_FEATHER, _("Soft"), _("Brush over parts that bend and stretch more")),
-    ("normal", icons.ICON_FA_ERASER, _("Normal"), _("Brush over parts to make them normal again")),
+TOOLS: tuple[tuple[StiffnessTool, str, str], ...] = (
+    ("stiff", _("Stiff"), _("Brush over parts that bend and stretch less")),
+    ("soft", _("Soft"), _("Brush over parts that bend and stretch more")),
+    ("normal", _("Normal"), _("Brush over parts to make them normal again")),
     (
         "bone",
-        icons.ICON_FA_BONE,
         _("Bone"),
         _("Drag from one handle to another: the limb is stiff"),
     ),
 )
 
 
-def draw_material_panel(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_material(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the brush, the bones, and the button that applies both to existing keys."""
     layer = project.layer
-    heading(look, _("Brush"), framed=True)
+    heading(look, _("Stiffness"), framed=True)
     align_right(1.15 * imgui.get_frame_height())
     hint, is_painted = _("Delete all strokes; bones stay"), layer.stiffness is not None
     actions = [] if session.display.tint == "stiffness" else [do(viewing.set_tint, "stiffness")]
@@ -66,11 +66,11 @@ def draw_material_panel(session: Session, look: Look, project: Project) -> list[
 def _tools(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
     palette, widths = look.palette, split_line(len(TOOLS))
-    for (tool, icon, name, hint), width in zip(TOOLS, widths, strict=True):
+    for (tool, name, hint), width in zip(TOOLS, widths, strict=True):
         is_chosen = session.tools.mode == tool
         imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)
         imgui.push_style_color(imgui.Col_.text, palette.on_accent if is_chosen else palette.text)
-        if imgui.button(f"{icon}  {name}###{tool} tool", ImVec2(width, 0)):
+        if fitted_button(f"{name}###{tool} tool", width):
             actions.append(do(stiffness_editing.toggle_stiffness_tool, tool))
         imgui.pop_style_color(2)
         draw_tooltip(hint)

@@ -34,7 +34,7 @@ SHOWN: tuple[tuple[OverlayName, str, str], ...] = (
 )
 
 
-def draw_domain_panel(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_mesh(session: Session, look: Look, project: Project) -> list[Action]:
     heading(look, _("Show"))
     actions = _toggles(session.display.overlays)
     heading(look, _("Info"))

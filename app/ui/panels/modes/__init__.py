@@ -1,4 +1,4 @@
-"""The tab of the distortion: the heat map, and curves over time.
+"""The bars over the drawing while a tool with settings of its own is active.
 
 In: a session.
 Out: actions.

@@ -1,33 +1,22 @@
-"""The panel of limits: their values, the distortion of poses, and the state of the solver."""
+"""The limits of a layer's poses: presets, and the values of each limit."""
 
 from dataclasses import dataclass, replace
 
-from imgui_bundle import icons_fontawesome_6 as icons, imgui
+from imgui_bundle import imgui
 
-from app.document import (
-    LIMIT_PRESETS,
-    TargetErrors,
-    find_limit_preset,
-    measure_target_errors,
-    segment_keys,
-    segment_time_at,
-)
-from app.editor import Action, Project, Session, do
-from app.editor.actions import playback
+from app.document import LIMIT_PRESETS, find_limit_preset, segment_keys, segment_time_at
+from app.editor import Action, Project, do
 from app.editor.actions.layer_setup import resolving
-from app.texts import _, ngettext
+from app.texts import _
 from app.ui.style.sliders import FIELD, Scale, number_field, slider_track
-from app.ui.style.theme import SMALL, Look
+from app.ui.style.theme import Look
 from app.ui.style.widgets import (
     FILL,
     align_right,
     draw_tooltip,
     heading,
     option_buttons,
-    progress_bar,
-    push_text_size,
     small_text,
-    text_button,
 )
 from engine.maps import Bounds, Certificate
 
@@ -76,10 +65,8 @@ LIMITS = (
 LEAST = {"k": 0.05, "sigma_a": 1.05, "sigma_b": 0.95}  # the tightest limits on the sliders
 
 
-def draw_deform_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the limits with the distortion of the pose, the solver's state, and all keys."""
-    if project.layer_runtime.shown is None:
-        return []
+def draw_limits(look: Look, project: Project) -> list[Action]:
+    """Draw the presets and, folded, each limit with the distortion of the pose."""
     bounds = _wanted_bounds(project)
     actions = _stretch(look, bounds)
     if imgui.tree_node_ex(_("Details"), _DETAILS):
@@ -92,11 +79,7 @@ def draw_deform_panel(session: Session, look: Look, project: Project) -> list[Ac
         )
         for limit in LIMITS:
             actions += _limit(look, limit, bounds, reached)
-    heading(look, _("Pose"))
-    _solver(session, look, project)
-    heading(look, _("Keys"))
-    actions += _keys(session, look, project)
-    return actions + _solving(project)
+    return actions
 
 
 def _wanted_bounds(project: Project) -> Bounds:
@@ -182,101 +165,3 @@ def _colour(look: Look, limit: LimitRow, used: float, bound: float) -> imgui.ImV
     palette, scale = look.palette, limit.scale
     share = scale.share(used) / max(scale.share(bound), 1e-6)
     return palette.danger if share > 1.0 else palette.warning if share > NEAR else palette.good
-
-
-def _solver(session: Session, look: Look, project: Project) -> None:
-    palette, shown = look.palette, project.layer_runtime.shown
-    pose = None if shown is None else shown.pose
-    if project.visible_drag is not None and not project.visible_drag.is_at_rest:
-        _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, _("Following the handles"))
-        time = 1000 * session.diagnostics.solver_seconds
-        small_text(look, _("{time:.0f} ms a step").format(time=time))
-        return
-    if shown is None or pose is None:
-        _status(look, icons.ICON_FA_FILM, palette.dim, _("An in-between"))
-        small_text(look, _("It never distorts more than its two keys."))
-        return
-    missed = measure_target_errors(shown.clip.layer, pose)
-    is_proven = shown.clip.layer.is_proven(pose)
-    if not is_proven:
-        _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, _("Beyond the limits"))
-    elif missed.errors:
-        _status(look, icons.ICON_FA_HAND, palette.warning, _describe_target_errors(missed))
-        small_text(
-            look,
-            _("Held back by the limits. A looser stretch brings handles nearer.")
-            if missed.at_limits
-            else _(
-                "Held back by the other handles and the shape's stiffness. More weight brings a "
-                "handle nearer."
-            ),
-        )
-    else:
-        _status(
-            look, icons.ICON_FA_CIRCLE_CHECK, palette.good, _("All handles reach their targets")
-        )
-    if is_proven:
-        small_text(look, _("Proven: nothing folds, and no point exceeds the limits."))
-
-
-def _describe_target_errors(missed: TargetErrors) -> str:
-    count, most = len(missed.errors), max(missed.errors.values())
-    return ngettext(
-        "{count} handle is {error:.0f} px short of its target",
-        "{count} handles are up to {error:.0f} px short",
-        count,
-    ).format(count=count, error=most)
-
-
-def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:
-    imgui.text_colored(colour, icon)
-    imgui.same_line(0, 0.5 * look.em)
-    imgui.text_unformatted(text)
-
-
-def _keys(session: Session, look: Look, project: Project) -> list[Action]:
-    """List the distortion of every key. A click moves the playhead to the key."""
-    actions: list[Action] = []
-    layer, palette = project.layer, look.palette
-    flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.pad_outer_x
-    if not imgui.begin_table("keys", 1 + len(LIMITS), flags):
-        return actions
-    with push_text_size(SMALL):
-        imgui.table_next_row()
-        for title in (_("Frame"), *(limit.symbol for limit in LIMITS)):
-            imgui.table_next_column()
-            imgui.text_colored(palette.dim, title)
-        now = playback.current_frame(session, project)
-        for key in layer.keys:
-            certificate = key.pose.certificate
-            imgui.table_next_row()
-            imgui.table_next_column()
-            if imgui.selectable(
-                f"{key.frame}###key {key.frame}",
-                key.frame == now,
-                imgui.SelectableFlags_.span_all_columns,
-            )[0]:
-                actions.append(do(playback.seek, key.frame))
-            for limit in LIMITS:
-                imgui.table_next_column()
-                value = float(getattr(certificate, limit.field))
-                beyond = limit.scale.share(value) > limit.scale.share(
-                    getattr(layer.bounds, limit.field)
-                )
-                imgui.text_colored(palette.danger if beyond else palette.text, f"{value:.2f}")
-    imgui.end_table()
-    return actions
-
-
-def _solving(project: Project) -> list[Action]:
-    resolver = project.key_resolver
-    if resolver is not None and resolver.new_layer is None:
-        return (
-            [do(resolving.cancel_solving_keys)]
-            if progress_bar(resolver.progress, resolver.status_text)
-            else []
-        )
-    reason = resolving.solving_disabled_reason(project)
-    hint = _("Pull the handles of every key to their targets again, within the limits")
-    is_pressed = text_button(_("Re-pose all keys"), FILL, hint, reason=reason)
-    return [do(resolving.solve_keys_again)] if is_pressed else []

@@ -1,4 +1,4 @@
-"""The setup of a layer: cut-out, mesh, material.
+"""The tab of the layer's shape: limits of its poses, stiffness and bones, and the mesh.
 
 In: the active layer.
 Out: actions on these.

@@ -10,7 +10,7 @@ from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, viewing
 from app.editor.poses import flipping, library, pasting
 from app.texts import _
-from app.ui.panels.pose_library.sliders import Pictures, draw_sliders
+from app.ui.panels.animate.sliders import Pictures
 from app.ui.shortcuts.widgets import draw_action_button, draw_action_text_button
 from app.ui.style.sliders import Scale, number_field, slider_track
 from app.ui.style.theme import SMALL, Look, colour_u32, pixel_density
@@ -32,12 +32,8 @@ TILE, LEAST_GAP = 6.6, 0.6  # em: side of a thumbnail, smallest distance
 SHARES = Scale(left=0.0, right=1.0)
 
 
-def draw_poses_panel(
-    session: Session, look: Look, project: Project, pictures: Pictures
-) -> list[Action]:
-    """Draw the library's poses as thumbnails, and the buttons that flip them."""
-    if project.layer_runtime.shown is None:
-        return []
+def draw_poses(session: Session, look: Look, project: Project, pictures: Pictures) -> list[Action]:
+    """Draw the library's poses as thumbnails."""
     heading(look, _("Poses"), framed=True)
     align_right(1.15 * imgui.get_frame_height())
     actions = draw_action_button(session, look, library.save_pose_to_library)
@@ -53,9 +49,7 @@ def draw_poses_panel(
         )
     else:
         small_text(look, _("Save a pose to use it again, at any frame, whole or blended in."))
-    actions += draw_sliders(session, look, project, pictures)
-    heading(look, _("Flip"))
-    return actions + _flip(session, look, project)
+    return actions
 
 
 def _libraries(
@@ -191,7 +185,8 @@ def _menu(kept: LibraryPose, owner: int, *, is_own: bool) -> list[Action]:
     return actions
 
 
-def _flip(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_flip(session: Session, look: Look, project: Project) -> list[Action]:
+    """Draw the buttons that flip poses, with their axis and the names of pairs."""
     layer, actions = project.layer, list[Action]()
     widths = split_line(2)
     for spec in (pasting.PASTE_FLIPPED, pasting.PASTE_SWAPPED):

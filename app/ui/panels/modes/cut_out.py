@@ -1,4 +1,4 @@
-"""The cut-out of the subject: by colour, brush, knife and mask; and its holes."""
+"""The bar of the cut-out: by colour, brush, knife and mask; and its holes."""
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
@@ -8,7 +8,7 @@ from app.editor.actions.layer_setup import cut_out_editing, resolving
 from app.editor.tools import move_tool
 from app.texts import _, ngettext
 from app.ui.shortcuts.keys import shown_keys
-from app.ui.style.sliders import Scale, slider
+from app.ui.style.sliders import Scale, slider, slider_track
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
     FILL,
@@ -17,6 +17,7 @@ from app.ui.style.widgets import (
     heading,
     icon_button,
     label,
+    main_button,
     option_buttons,
     progress_bar,
     small_text,
@@ -24,12 +25,13 @@ from app.ui.style.widgets import (
     text_button,
 )
 
+WIDE, SIZE = 36.0, 7.0  # em: least room for the names of tools, width of the size
 TOLERANCES = Scale(left=0, right=120)
 BRUSHES = Scale(
     left=cut_out_editing.SMALLEST_BRUSH, right=cut_out_editing.LARGEST_BRUSH / 2, logarithmic=True
 )
-BACKGROUNDS = (("auto", _("Automatic")), ("none", _("None")), ("colour", _("Colour")))
-ENCLOSED = (("auto", _("Automatic")), ("keep", _("Keep")), ("remove", _("Remove")))
+BACKGROUNDS = (("auto", _("Auto")), ("none", _("None")), ("colour", _("Colour")))
+ENCLOSED = (("auto", _("Auto")), ("keep", _("Keep")), ("remove", _("Remove")))
 HAND_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
     (
         "keep",
@@ -47,11 +49,43 @@ HAND_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
 )
 
 
-def draw_cut_out_panel(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_cut_out_bar(
+    session: Session, look: Look, project: Project, room: float
+) -> tuple[list[Action], bool]:
+    """Draw the tools that cut by hand in `room` pixels. Also return whether settings are open."""
+    actions: list[Action] = []
+    with_names = room > WIDE * look.em
+    for tool, icon, name, hint in HAND_TOOLS:
+        text = f"{icon}  {name}" if with_names else icon
+        actions += _tool(session, look, tool, text, hint if with_names else f"{name}: {hint}")
+        imgui.same_line()
+    radius, width = cut_out_editing.brush_radius(project), SIZE * look.em
+    moved = slider_track(look, "brush", radius, BRUSHES, width, colour=look.palette.accent)
+    draw_tooltip(brush_hint())
+    if moved is not None:
+        actions.append(do(cut_out_editing.set_brush_radius, moved.value))
+    imgui.same_line()
+    opened, storage = imgui.get_id("settings are open"), imgui.get_state_storage()
+    is_open = storage.get_bool(opened)
+    hint = _("Background, mask and holes")
+    if icon_button(look, icons.ICON_FA_SLIDERS, "cut-out settings", hint, active=is_open):
+        storage.set_bool(opened, not is_open)
+    imgui.same_line()
+    if main_button(
+        look,
+        _("Done") + "###done",
+        hint=_("Show the posed drawing"),
+        keys=shown_keys(move_tool.return_to_posing),
+    ):
+        actions.append(do(cut_out_editing.toggle_cut_tool, None))
+    return actions + _state(look, project), is_open
+
+
+def draw_cut_out_settings(session: Session, look: Look, project: Project) -> list[Action]:
     cut_out = project.layer.cut_out
     heading(look, _("Background"))
     actions = _background(session, look, project, cut_out)
-    heading(look, _("By hand"), framed=True)
+    heading(look, _("Strokes and mask"), framed=True)
     align_right(1.15 * imgui.get_frame_height())
     if icon_button(
         look,
@@ -61,12 +95,9 @@ def draw_cut_out_panel(session: Session, look: Look, project: Project) -> list[A
         reason=None if cut_out.is_by_hand else _("There is nothing to delete."),
     ):
         actions.append(do(cut_out_editing.clear_cut_out_strokes))
-    actions += _brush(session, look, project)
     actions += _mask(look, cut_out)
     heading(look, _("Holes"))
-    actions += _holes(session, look, project)
-    actions += _state(session, look, project)
-    return actions
+    return actions + _holes(session, look, project)
 
 
 def _background(session: Session, look: Look, project: Project, cut_out: CutOut) -> list[Action]:
@@ -115,7 +146,7 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
     draw_tooltip(
         _(
             "Parts inside that have the background's colour, as between an arm and the body. "
-            "Automatic removes vivid colours, but keeps white, grey and black, which eyes have "
+            "Auto removes vivid colours, but keeps white, grey and black, which eyes have "
             "too. Use “Click holes” to change a single part."
         )
     )
@@ -137,20 +168,6 @@ def brush_hint() -> str:
     smaller, larger = map(shown_keys, (cut_out_editing.shrink_brush, cut_out_editing.enlarge_brush))
     text = _("Radius of the brush in pixels of the picture. {smaller} and {larger} change it.")
     return text.format(smaller=smaller, larger=larger)
-
-
-def _brush(session: Session, look: Look, project: Project) -> list[Action]:
-    actions: list[Action] = []
-    widths = split_line(len(HAND_TOOLS))
-    for (tool, icon, name, hint), width in zip(HAND_TOOLS, widths, strict=True):
-        actions += _tool(session, look, tool, f"{icon}  {name}", hint, width=width)
-    label(look, _("Size"))
-    hint = brush_hint()
-    radius = cut_out_editing.brush_radius(project)
-    entered = slider(look, "brush", radius, BRUSHES, text="%.0f", hint=hint)
-    if entered is not None:
-        actions.append(do(cut_out_editing.set_brush_radius, entered.value))
-    return actions
 
 
 def _mask(look: Look, cut_out: CutOut) -> list[Action]:
@@ -198,27 +215,13 @@ def _tool(
     return [do(cut_out_editing.toggle_cut_tool, tool)] if pressed else []
 
 
-def _state(session: Session, look: Look, project: Project) -> list[Action]:
-    actions: list[Action] = []
-    imgui.dummy(ImVec2(0, 0.2 * look.em))
+def _state(look: Look, project: Project) -> list[Action]:
+    """Draw the progress of the new mesh, or why there is none."""
     resolver = project.key_resolver
     if resolver is not None and resolver.meshing is not None:
-        if progress_bar(resolver.progress, resolver.status_text):
-            actions.append(do(resolving.cancel_solving_keys))
-    elif session.tools.is_cutting:
-        hint, keys = _("Show the posed drawing"), shown_keys(move_tool.return_to_posing)
-        if text_button(_("Back to posing") + "###done", FILL, hint, keys):
-            actions.append(do(cut_out_editing.toggle_cut_tool, None))
+        is_stopped = progress_bar(resolver.progress, resolver.status_text)
+        return [do(resolving.cancel_solving_keys)] if is_stopped else []
     if project.layer.is_stale and project.layer is project.layer_setup.unbuildable:
-        small_text(
-            look,
-            _(
-                "This cut-out leaves no shape, so the mesh did not change. Change the cut-out, "
-                "or undo."
-            ),
-        )
-    small_text(
-        look,
-        _("When you pause, Lissom rebuilds the mesh and re-poses every key. Handles stay."),
-    )
-    return actions
+        text = _("This cut-out leaves no shape, so the mesh did not change. Change it, or undo.")
+        small_text(look, text, look.palette.warning)
+    return []

@@ -1,4 +1,4 @@
-"""The distortion of the drawing: on the drawing, over its area, and over time."""
+"""The tab of measures: distortion on the drawing, over its area, over time, and of keys."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -12,12 +12,13 @@ from app.motion import LayerFrame
 from app.render import heat_colormap
 from app.texts import _
 from app.ui.methods import METHODS
-from app.ui.panels.distortion.curves import (
+from app.ui.panels.measure.curves import (
     LIMIT_WIDTH,
     PLOT_FLAGS,
     draw_distortion_curves,
     draw_rule,
 )
+from app.ui.panels.measure.keys import draw_key_table, draw_pose_state
 from app.ui.style.theme import Look
 from app.ui.style.widgets import draw_tooltip, heading, option_buttons, small_text
 from app.ui.viewport.canvas import heat_limits
@@ -37,7 +38,7 @@ BINS = 48
 HISTOGRAM, STRIP = 4.6, 0.45  # em
 
 
-def draw_distortion_panel(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_measure_panel(session: Session, look: Look, project: Project) -> list[Action]:
     if project.layer_runtime.shown is None:
         return []
     _style_plots(look)
@@ -53,8 +54,12 @@ def draw_distortion_panel(session: Session, look: Look, project: Project) -> lis
     heading(look, _("Over time"))
     if len(project.layer.keys) < 2:
         small_text(look, _("Make a second key to see how the in-betweens distort."))
-        return actions
-    return [*actions, *draw_distortion_curves(session, look, project)]
+    else:
+        actions += draw_distortion_curves(session, look, project)
+    heading(look, _("Pose"))
+    draw_pose_state(session, look, project)
+    heading(look, _("Keys"))
+    return actions + draw_key_table(session, look, project)
 
 
 def _compare(session: Session, look: Look) -> list[Action]:

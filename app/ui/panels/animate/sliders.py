@@ -26,9 +26,9 @@ from app.editor.actions.timing.channel_keys import set_channel_value
 from app.editor.poses import sliders
 from app.motion import LayerFrame
 from app.texts import _, ngettext
+from app.ui.panels.animate.new_slider import NEW_SLIDER, draw_new_slider
 from app.ui.panels.handle_settings.spring import PRESET_NAMES
 from app.ui.panels.key_diamond import diamond_room, draw_key_diamond
-from app.ui.panels.pose_library.new_slider import NEW_SLIDER, draw_new_slider
 from app.ui.style.sliders import Scale, number_field, slider_track
 from app.ui.style.theme import SMALL, Look, colour_u32, pixel_density
 from app.ui.style.widgets import (

@@ -1,0 +1,17 @@
+"""The height that the timeline wants: small for one layer, more with each row and lane."""
+
+from app.editor import Project
+from app.ui.timeline.layout import EVEN, MARKS, SOUND, THIN
+
+LEAST = 8.0  # em: with the row of a single layer
+
+
+def wanted_height(project: Project) -> float:
+    """Return the height in em in which all rows, lanes and bands can be seen."""
+    document, opened = project.document, project.timeline.expanded_layers
+    rows = [EVEN if row.layer else THIN for row in project.tree]
+    layers = (row.layer for row in project.tree if row.layer and row.layer.id in opened)
+    lanes = sum(len(project.lanes_of(layer)) - 1 for layer in layers)
+    bands = THIN * bool(document.camera) + MARKS * bool(document.markers)
+    sounds = SOUND * len(document.sounds)
+    return LEAST + sum(rows) - EVEN + lanes * THIN + bands + sounds

@@ -1,0 +1,70 @@
+"""The drawing comes first: few controls, and most of the window for the drawing."""
+
+import pytest
+from calm import SIZES, measure_calm
+from harness import Harness
+from imgui_bundle import imgui
+
+from app.editor.actions import viewing
+from app.storage.assets import sample_images
+from app.ui.panel import is_in_front
+
+MOST_CONTROLS = 28
+# Of the window, by its size: 1280 × 800, 1024 × 700, 1600 × 1000 at 200 %.
+LEAST_SHARES = (0.55, 0.50, 0.38)
+
+
+@pytest.fixture
+def drawing(window):
+    """A drawing that was just opened, with nothing selected."""
+    yield window.again(Harness.open, sample_images() / "ring.png")
+    window.resize((1280, 800))
+
+
+@pytest.mark.parametrize(("size", "least"), [*zip(SIZES, LEAST_SHARES, strict=True)])
+@pytest.mark.usefixtures("drawing")
+def test_a_drawing_has_most_of_the_window_and_few_controls_beside_it(window, size, least):
+    window.show_tab("Handle")
+    window.resize(*size)
+    window.frames(10)
+    calm = measure_calm(window)
+    assert calm.count <= MOST_CONTROLS, calm.controls
+    assert calm.controls["tabs"] == 5
+    assert calm.share >= least
+
+
+@pytest.mark.usefixtures("drawing")
+def test_a_folded_panel_gives_its_room_to_the_drawing_and_comes_back(window):
+    window.show_tab("Shape")
+    tab = int(imgui.Key.tab)
+    window.run(lambda robot: robot.key_press(tab))
+    window.frames(6)
+    assert measure_calm(window).share >= 0.70
+    window.run(lambda robot: robot.key_press(tab))
+    window.frames(6)
+    assert is_in_front("Shape")
+    window.act(viewing.toggle_panel)
+    window.act(viewing.show_tab, "Export")
+    window.frames(6)
+    assert is_in_front("Export"), "whoever shows a tab unfolds the panel"
+    assert 0.55 < measure_calm(window).share < 0.70
+    window.show_tab("Handle")
+
+
+def test_the_timeline_grows_with_its_rows_until_a_person_sets_its_height(window):
+    def height():
+        return imgui.internal.find_window_by_name("###Timeline").dock_node.size.y
+
+    window.again(Harness.open, sample_images() / "ring.png")
+    low = height()
+    window.open(sample_images() / "friend.lissom")
+    window.frames(10)
+    assert height() > 1.5 * low
+    node = imgui.internal.find_window_by_name("###Timeline").dock_node
+    imgui.internal.dock_builder_set_node_size(node.id_, imgui.ImVec2(node.size.x, 170))
+    viewing.toggle_theme(window.session)
+    window.frames(10)
+    window.again(Harness.open, sample_images() / "ring.png")
+    window.frames(10)
+    window.resize((1280, 800))
+    assert height() == pytest.approx(low, abs=1), "the layout was put back"
