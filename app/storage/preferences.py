@@ -4,8 +4,9 @@ import json
 import os
 import re
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -53,6 +54,8 @@ class Preferences:
         Last folder of a file dialog.
     exported : Path, optional
         Last export folder.
+    keys : mapping of str to str
+        Key chords that the person chose, by labels of actions: "Ctrl+B", or "" for none.
     memory : int, optional
         Megabytes for the decoded pictures of a file; None for a share of the machine's memory.
     """
@@ -72,6 +75,7 @@ class Preferences:
     recent: tuple[Path, ...] = ()
     folder: Path | None = None
     exported: Path | None = None
+    keys: Mapping[str, str] = field(default_factory=dict)
     memory: int | None = None
 
     @property
@@ -162,6 +166,8 @@ def _understood(content: dict[str, Any]) -> Preferences:
         for name in ("folder", "exported")
     )
     backdrop = expand_colour(str(content.get("backdrop"))).lower()
+    chosen = content.get("keys")
+    keys = chosen.items() if isinstance(chosen, dict) else ()
     return Preferences(
         theme="light" if content.get("theme") == "light" else "dark",
         scale=float(number("scale", SMALLEST_SCALE, LARGEST_SCALE)),
@@ -175,6 +181,7 @@ def _understood(content: dict[str, Any]) -> Preferences:
         path_reach=int(number("path_reach", 0, LONGEST_PATH_REACH)),
         panel_width=number("panel_width", 1, LARGEST_DOCK),
         timeline_height=number("timeline_height", 1, LARGEST_DOCK),
+        keys={label: chords for label, chords in keys if isinstance(chords, str)},
         recent=tuple(Path(path) for path in paths if isinstance(path, str))[:MOST_RECENT],
         folder=folder,
         exported=exported,

@@ -2,6 +2,7 @@
 
 import os
 import webbrowser
+from collections.abc import Mapping
 from pathlib import Path
 
 from app.editor import error_reports
@@ -41,6 +42,17 @@ def use_own_file_browser(session: Session) -> None:
 @named_action(_("Keys and mouse"), "Shift+F1", needs_project=False)
 def show_shortcuts(session: Session) -> None:
     session.dialogs.show(ShortcutSheet())
+
+
+def edit_shortcut_sheet(session: Session, sheet: ShortcutSheet) -> None:
+    """Set the state of the open list of shortcuts."""
+    session.dialogs.show(sheet)
+
+
+def choose_keys(session: Session, keys: Mapping[str, str], sheet: ShortcutSheet) -> None:
+    """Set the keys that differ from the actions' own, by labels; show the list of shortcuts."""
+    session.settings.prefer(keys=dict(keys))
+    session.dialogs.show(sheet)
 
 
 REPORT = ActionSpec(

@@ -203,7 +203,9 @@ def toggle_theme(session: Session) -> None:
     session.settings.prefer(theme=theme)
 
 
-@named_action(_("Larger interface"), "Ctrl+Equal, Ctrl+KeypadAdd", needs_project=False)
+@named_action(
+    _("Larger interface"), "Ctrl+Equal, Ctrl+Shift+Equal, Ctrl+KeypadAdd", needs_project=False
+)
 def enlarge_interface(session: Session) -> None:
     _scale_interface(session, SCALE_STEP)
 

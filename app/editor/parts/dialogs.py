@@ -54,9 +54,23 @@ class Question:
     answers: tuple[tuple[str, Action], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ShortcutSheet:
-    """The list of all shortcuts."""
+    """The list of all shortcuts, in which they are changed.
+
+    Attributes
+    ----------
+    search : str
+        Part of the listed actions' labels or keys.
+    changed : str
+        Label of the action whose keys are asked for; "" for none.
+    taken : int
+        Key chord that was pressed for it and belongs to another action; 0 for none.
+    """
+
+    search: str = ""
+    changed: str = ""
+    taken: int = 0
 
 
 class RecoverableFile(NamedTuple):

@@ -172,7 +172,7 @@ class PoseSampler:
     def basis_of(self, forms: Complexes) -> SpanBasis:
         """Return functions with coefficients (n, j) in the span at the nodes, cached by content."""
         key = ("forms", *self._content, digest(forms))
-        return SAMPLED.find(key, lambda: self.basis.combined(forms), nbytes_or_0)
+        return SAMPLED.find(key, partial(self.basis.combined, forms), nbytes_or_0)
 
     def inbetweens_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a segment; motion through smooth keys keeps the limits."""
@@ -260,7 +260,7 @@ class PoseSampler:
     def segment_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> KeyframeSegment:
         """Return a segment as the engine needs it, sampled here."""
         samples = [self.samples(key.pose) for key in segment.keys]
-        anchors = np.array([sample.anchor_fz for sample in samples])
+        anchors = np.array([each.anchor_fz for each in samples])
         if not segment.has_smooth_tangent:
             keyframe_blend = KeyframeBlend.of(samples, root_sheets(anchors, segment.revolutions))
             return self._interval(keyframe_blend, variant, Bounds())
@@ -294,12 +294,6 @@ class PoseSampler:
         residual = SAMPLED.find(key, solve, nbytes_or_0)
         return prepare_inbetweens(variant, interval._replace(residual=residual))
 
-    def _interval(
-        self, keyframe_blend: KeyframeBlend, variant: Variant, bounds: Bounds
-    ) -> KeyframeSegment:
-        return KeyframeSegment(
-            sampled_domain=self.sites,
-            keyframe_blend=keyframe_blend,
-            bounds=bounds,
-            transform=self.extension if variant.needs_transform else None,
-        )
+    def _interval(self, blend: KeyframeBlend, variant: Variant, bounds: Bounds) -> KeyframeSegment:
+        transform = self.extension if variant.needs_transform else None
+        return KeyframeSegment(self.sites, blend, bounds, transform=transform)

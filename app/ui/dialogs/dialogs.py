@@ -1,8 +1,5 @@
 """The open dialog: a question, the sheet of shortcuts, or a file dialog."""
 
-from collections.abc import Mapping
-from itertools import chain, combinations_with_replacement
-
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import (
@@ -21,27 +18,28 @@ from app.editor import (
 from app.editor.actions.dialog_actions import (
     answer_dialog,
     browse_files,
+    choose_keys,
     close_dialog,
+    edit_shortcut_sheet,
     use_own_file_browser,
 )
 from app.errors import display_name
-from app.texts import N_, _
+from app.texts import _
 from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
 from app.ui.dialogs.problem import draw_problem_dialog
 from app.ui.dialogs.recovery import draw_recovery_dialog
 from app.ui.dialogs.reload import draw_reload_dialog
-from app.ui.shortcuts.keys import shown_keys
-from app.ui.shortcuts.pointer_help import POINTER_HELP
-from app.ui.shortcuts.table import MENUS
+from app.ui.dialogs.shortcut_sheet import draw_shortcut_sheet
 from app.ui.style.theme import Look
-from app.ui.style.widgets import heading, main_button
+from app.ui.style.widgets import main_button
 
-HEADING = 2  # rows of a group's heading
 GOING_ON = (
     browse_files,
     use_own_file_browser,
     error_reports.edit_report_text,
+    edit_shortcut_sheet,
+    choose_keys,
 )  # with the open dialog
 
 
@@ -73,7 +71,8 @@ class Dialogs:
         if not visible:
             return [do(close_dialog)]
         actions = self._contents(dialog, session, look, thumbnail)
-        if not open_ or imgui.is_key_pressed(imgui.Key.escape):
+        asks_for_keys = isinstance(dialog, ShortcutSheet) and dialog.changed
+        if not open_ or (imgui.is_key_pressed(imgui.Key.escape) and not asks_for_keys):
             actions.append(do(close_dialog))
         if any(action.verb not in GOING_ON for action in actions):
             imgui.close_current_popup()
@@ -104,10 +103,10 @@ class Dialogs:
                 return [*_waiting(look), *self._native.poll(session.clock())]
             case FileDialog():
                 return self._browser.draw(dialog, session, look, thumbnail)
-        return _other_contents(dialog, look)
+        return _other_contents(dialog, session, look)
 
 
-def _other_contents(dialog: Dialog, look: Look) -> list[Action]:
+def _other_contents(dialog: Dialog, session: Session, look: Look) -> list[Action]:
     """Draw a dialog that is neither a question nor a file dialog."""
     match dialog:
         case ReloadDialog():
@@ -116,9 +115,9 @@ def _other_contents(dialog: Dialog, look: Look) -> list[Action]:
             return draw_recovery_dialog(dialog, look)
         case ProblemReport():
             return draw_problem_dialog(dialog, look)
-        case _:
-            _shortcuts(look)
-            return []
+        case ShortcutSheet():
+            return draw_shortcut_sheet(dialog, session, look)
+    return []
 
 
 def _title(dialog: Dialog) -> str:
@@ -178,42 +177,3 @@ def _question(question: Question, look: Look) -> list[Action]:
     if imgui.button(_("Cancel")):
         actions.append(do(close_dialog))
     return actions
-
-
-def _shortcuts(look: Look) -> None:
-    rows: dict[str, list[tuple[str, str]]] = {
-        menu: [(spec.label, shown_keys(spec)) for spec in chain(*groups) if shown_keys(spec)]
-        for menu, groups in MENUS.items()
-    }
-    rows[N_("Pointer")] = [(gesture.effect, gesture.gesture) for gesture in POINTER_HELP]
-    style = imgui.get_style()
-    # Tighter than elsewhere, so that all shortcuts are visible at once.
-    imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(style.item_spacing.x, 0.2 * look.em))
-    columns = _columns({group: len(rows[group]) for group in rows})
-    if imgui.begin_table("sheet", len(columns), imgui.TableFlags_.sizing_fixed_fit):
-        for column in columns:
-            imgui.table_next_column()
-            names = [text for group in column for text, *_keys in rows[group]]
-            keys_at = max(imgui.calc_text_size(name).x for name in names) + 1.6 * look.em
-            for group in column:
-                heading(look, _(group))
-                for text, keys in rows[group]:
-                    imgui.text_unformatted(text)
-                    imgui.same_line(keys_at)
-                    imgui.text_disabled(keys)
-            imgui.dummy(ImVec2(20 * look.em, 0))
-        imgui.end_table()
-    imgui.pop_style_var()
-
-
-def _columns(sizes: Mapping[str, int]) -> tuple[list[str], ...]:
-    """Split groups into three columns of nearly equal height, in order. `sizes` are in rows."""
-    names = list(sizes)
-    cuts = combinations_with_replacement(range(len(names) + 1), 2)
-    parted = [(names[:i], names[i:j], names[j:]) for i, j in cuts]
-    return min(
-        parted,
-        key=lambda columns: max(
-            sum(sizes[name] + HEADING for name in column) for column in columns
-        ),
-    )

@@ -1,4 +1,9 @@
-"""Shortcuts: they work wherever the pointer is."""
+"""Shortcuts: they work wherever the pointer is.
+
+A key acts by the character that it types, as well as by its place on the keyboard.
+"""
+
+from collections.abc import Callable
 
 from imgui_bundle import imgui
 
@@ -6,35 +11,46 @@ from app.editor import Action, Session, do
 from app.editor.actions import dialog_actions, playback, viewing
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.tools import move_tool
-from app.ui.shortcuts.keys import CTRL, chords_of
+from app.ui.shortcuts.keys import CTRL, PRESSED_KEYS, SIGNS, chords_of
 from app.ui.shortcuts.table import ACTIONS, ENDED_BY_ESC
 
 Key = imgui.Key
 MODIFIERS = int(imgui.Key.mod_mask_)
 ARROWS = {Key.left_arrow: -1, Key.right_arrow: 1, Key.up_arrow: 1j, Key.down_arrow: -1j}
-# All keys of shortcuts, without modifiers.
-_KEYS = {
-    *(Key(chord & ~MODIFIERS) for spec in ACTIONS.values() for chord in chords_of(spec)),
-    *ARROWS,
-}
+PLUS = int(Key.equal)  # the key of + on English keyboards
 
 
-def collect_key_actions(session: Session) -> list[Action]:
-    """Return the actions whose keys were pressed, unless the person types into a field."""
+def collect_key_actions(
+    session: Session, plus_key: Callable[[], Key | None] = lambda: None
+) -> list[Action]:
+    """Return the actions whose keys were pressed, unless the person types into a field.
+
+    `plus_key` returns the key that types +, if it is not the one of English keyboards.
+    """
     if session.dialogs.current is not None:
         return []
     if _close_menu() or imgui.get_io().want_text_input:
         return []
     # First, because copy and select depend on the focus.
     actions = _follow_focus(session)
-    if [key for key in _KEYS if imgui.is_key_down(key)]:
+    typed = _typed_signs()
+    if typed or [key for key in PRESSED_KEYS if imgui.is_key_down(key)]:
         # Arrow keys that move something do not also go to a key.
-        actions += _nudges(session) or _press_shortcuts(session)
+        actions += _nudges(session) or _press_shortcuts(session, typed, plus_key())
     return actions + _space(session)
 
 
-def _press_shortcuts(session: Session) -> list[Action]:
+def _typed_signs() -> set[int]:
+    """Return the keys of signs that other keys have typed, as AltGr+8 types [ in German."""
+    typed = map(chr, imgui.get_io().input_queue_characters)
+    keys = {SIGNS[sign] for sign in typed if sign in SIGNS}
+    return {key for key in keys if not imgui.is_key_down(Key(key))}
+
+
+def _press_shortcuts(session: Session, typed: set[int], plus: Key | None) -> list[Action]:
     """Return the actions of pressed shortcuts: of each key the first that is possible.
+
+    `typed` are keys whose signs other keys have typed; `plus` is the key that types +.
 
     If none is possible, a notice says why. Esc says nothing, since it belongs to many actions.
     """
@@ -49,7 +65,10 @@ def _press_shortcuts(session: Session) -> list[Action]:
         # Typed characters belong to the drag.
         keys = [key for key in chords_of(spec) if not (is_dragging and _is_typed(key))]
         for key in keys:
-            if key in pressed or not imgui.shortcut(key, flags):
+            is_pressed = imgui.shortcut(key, flags) or key in typed
+            if not is_pressed and plus is not None and key & ~MODIFIERS == PLUS:
+                is_pressed = imgui.shortcut(int(plus) | key & MODIFIERS, flags)
+            if key in pressed or not is_pressed:
                 continue
             reason = spec.disabled_reason(session)
             if reason is None:

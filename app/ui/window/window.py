@@ -37,6 +37,7 @@ from app.ui.viewport.split_view import SplitTextures
 from app.ui.window.desktop import NAME, name_application, show_icon, window_title
 from app.ui.window.events.drag_and_drop import accept_files
 from app.ui.window.events.input_queue import InputQueue
+from app.ui.window.events.keyboard_layout import find_plus_key
 from app.ui.window.events.modifiers import release_stuck_modifiers
 from app.ui.window.exporter import Exporter
 from app.ui.window.guard import FrameStep
@@ -110,6 +111,7 @@ class Window:
         params = self.runner_params()
         params.app_window_params.window_title = self._title
         calls = params.callbacks
+        self.shell.follow_layout(find_plus_key)
         calls.enqueue_post_init(self._accept_files)
         calls.enqueue_post_init(show_icon)
         calls.pre_new_frame = hello_imgui.sequence_functions(self._rename, calls.pre_new_frame)

@@ -34,6 +34,7 @@ from app.ui.dialogs.dialogs import Dialogs
 from app.ui.panel import Panel
 from app.ui.panels.modes.bar import draw_mode_bar
 from app.ui.shortcuts.key_input import collect_key_actions
+from app.ui.shortcuts.keys import KEY_MAP
 from app.ui.shortcuts.table import MENUS
 from app.ui.style.theme import Look, interface_scale
 from app.ui.toasts import ToastStack
@@ -69,6 +70,7 @@ class WindowFrame:
         self._actions: list[Action] = []
         self._asked: list[Action] = []
         self.queue = ActionQueue(session, self._report_error)
+        self._plus_key: Callable[[], imgui.Key | None] = lambda: None
         self._pace = FramePace()
         previews = welcome.Previews(thumbnail, moments)
         over = (
@@ -90,12 +92,9 @@ class WindowFrame:
             WindowPart(STATUS_BAR, draw_status_bar, place="bar"),
             WindowPart(TOOL_BAR, _with_project(draw_tool_bar), place="bar"),
         )
+        draw_menu = partial(draw_main_menu, panels=panels)
         menus = [
-            WindowPart(
-                name_menu(title),
-                partial(draw_main_menu, title=title, panels=panels),
-                place="menu",
-            )
+            WindowPart(name_menu(title), partial(draw_menu, title=title), place="menu")
             for title in MENUS
         ]
         docked = [WindowPart(name_panel(each), _with_project(each.draw)) for each in panels]
@@ -152,6 +151,10 @@ class WindowFrame:
         params.fps_idling.fps_idle = IDLE_FPS
         params.fps_idling.time_active_after_last_event = AWAKE
         return params
+
+    def follow_layout(self, plus_key: Callable[[], imgui.Key | None]) -> None:
+        """Ask from now on which key types +."""
+        self._plus_key = plus_key
 
     def queue_action(self, action: Action) -> None:
         """Apply an action at the end of the next frame."""
@@ -215,10 +218,11 @@ class WindowFrame:
         if self.queue.waiting and imgui.is_key_pressed(imgui.Key.escape):
             stop_finishing_pose(self.session)
         else:
-            self._actions += collect_key_actions(self.session)
+            self._actions += collect_key_actions(self.session, self._plus_key)
 
     def _begin_frame(self) -> None:
         session, project = self.session, self.session.project
+        KEY_MAP.use(session.settings.preferences.keys)
         self._seen, self._places = self._places, {}
         self._appearance.begin_frame()
         self._docking.begin_frame(interface_scale(session.settings.preferences.scale), session)
@@ -271,7 +275,7 @@ class WindowFrame:
         session, revision = self.session, frame_update.session_revision(self.session)
         is_due = frame_update.is_due_in_time(session) or autosaving.is_autosave_due(session)
         # A failed step is tried again.
-        is_due = is_due or bool([step for step in self._update_steps if step.failure is not None])
+        is_due = is_due or any(step.failure is not None for step in self._update_steps)
         if revision == self._revision and not is_due:
             return
         # Changes that the steps make are seen in the next frame.
