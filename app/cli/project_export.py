@@ -87,7 +87,7 @@ def _pictures(document: Document, source: str) -> dict[int, Bytes]:
 
 
 def _summary_of_frames(plan: ExportPlan) -> str:
-    width, height = plan.view.size
+    width, height = plan.size
     count = len(plan.times)
     values = {"path": plan.out, "count": count, "width": width, "height": height}
     if EXPORT_FORMATS[plan.format].is_still:
@@ -139,6 +139,6 @@ def _summary_of_shapes(maker: MeshExport, plan: ExportPlan) -> str:
     return _("{path}: {shapes}; {seconds:g} s, {size:,.0f} KB").format(
         path=plan.out,
         shapes="; ".join(shapes),
-        seconds=round((last - first) / plan.fps, 2),
+        seconds=round((last - first) / plan.timeline_fps, 2),
         size=plan.out.stat().st_size / 1000,
     )

@@ -68,6 +68,7 @@ def relax_limits(bounds: Bounds) -> Bounds | None:
 
 SLOWEST, FASTEST = 1 / 60, 1000.0  # frames per second
 FRAME_NAMES = "frame_####"
+MOST_EXPORT_REPEATS, LARGEST_EXPORT_SPEED = 100, 10.0  # the inverse is the smallest speed
 # Excludes characters that some system does not allow in a file name.
 _LITERAL = r'[^#/\\:*?"<>|\x00-\x1f\ud800-\udfff]{0,100}'
 
@@ -164,7 +165,8 @@ class ExportSettings(FormatSettings):
 
     `size` is in pixels; None takes the framing at the drawing's own size. `background` is
     "transparent" or "#rrggbb". The framing "fit" shows all of the motion, "canvas" the canvas.
-    Without `frames`, all frames are exported.
+    Without `frames`, all frames are exported. They play `repeat` times, at `speed` times their own
+    speed; a picture shows the same frame for as long, so that slower motion has more pictures.
 
     `names` are file names of frames without their ending. Each "#" is a digit of the frame number,
     and "{name}" is the project's name. `earlier` are the last settings of other formats.
@@ -177,11 +179,26 @@ class ExportSettings(FormatSettings):
     frames: FrameRange | None = None
     names: str = FRAME_NAMES
     sound: bool = True  # whether formats that can carry sounds carry them
+    repeat: int = 1
+    speed: float = 1.0
     earlier: tuple[PictureSettings, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "background", expand_colour(self.background))
         _require_pictures(self.format, self.size, self.background)
+        require(
+            1 <= self.repeat <= MOST_EXPORT_REPEATS,
+            N_("An export can repeat from 1 to {most} times, not {count} times."),
+            most=MOST_EXPORT_REPEATS,
+            count=self.repeat,
+        )
+        require(
+            1 / LARGEST_EXPORT_SPEED <= self.speed <= LARGEST_EXPORT_SPEED,
+            N_("An export has from {least:.0f} % to {most:,.0f} % of the speed, not {speed:g} %."),
+            least=100 / LARGEST_EXPORT_SPEED,
+            most=100 * LARGEST_EXPORT_SPEED,
+            speed=100 * self.speed,
+        )
         require(
             self.framing in FRAMINGS,
             N_("The framing must be one of {framings}, not {framing!r}."),

@@ -23,9 +23,12 @@ from app.export.mesh_export import MeshExport as MeshExport
 from app.export.morph_mesh import with_reduced_meshes as with_reduced_meshes
 from app.export.plan import (
     ExportPlan as ExportPlan,
+    plan_export as plan_export,
+)
+from app.export.request import (
     ExportRequest as ExportRequest,
     check_request as check_request,
+    export_times as export_times,
     list_overwritten_files as list_overwritten_files,
-    plan_export as plan_export,
 )
 from app.export.writers.spritesheet import sheet_grid as sheet_grid

@@ -169,13 +169,13 @@ def build_morph_scene(
             * math.prod(group.opacity for group in document.groups_around(layer.group)),
             uv=uv,
             triangle_orders=tuple(
-                ((n - first) / document.fps, order) for n, order in _changes(orders)
+                ((n - first) / plan.timeline_fps, order) for n, order in _changes(orders)
             ),
             visibility_changes=tuple(
-                ((n - first) / document.fps, seen) for n, seen in _changes(visibility)
+                ((n - first) / plan.timeline_fps, seen) for n, seen in _changes(visibility)
             ),
-            motion=replace(motion, times=freeze((motion.times - first) / document.fps)),
-            node=node and replace(node, times=freeze((node.times - first) / document.fps)),
+            motion=replace(motion, times=freeze((motion.times - first) / plan.timeline_fps)),
+            node=node and replace(node, times=freeze((node.times - first) / plan.timeline_fps)),
         )
         found.append(shape)
     numbered = {clip.layer.id: number for number, clip in enumerate(clips)}

@@ -7,57 +7,18 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.document import (
-    Document,
-    ExportSettings,
-    FrameRange,
-    export_frame_range,
-    frame_times,
-)
-from app.errors import LIBRARIES, LissomError, install_hint
-from app.export.destination import (
-    FrameNames,
-    check_destination,
-    check_room,
-    find_overwritten_files,
-    find_stale_frames,
-)
-from app.export.framing import check_blocks, check_largest_size, frame_view, list_added_pixels
+from app.document import Document
+from app.export.destination import FrameNames, check_room, find_stale_frames
+from app.export.framing import check_largest_size, frame_view, list_added_pixels
+from app.export.request import ExportRequest, export_times, exported_frames
 from app.export_formats import EXPORT_FORMATS, FormatSettings
 from app.motion import BoundingBox, Evaluator, bounding_box, measure_extent
 from app.render import View
 from app.sound import Soundtrack, find_soundtrack, list_sound_notices
-from app.texts import _, ngettext
+from app.texts import ngettext
 
 # Minimum of bytes per frame pixel: an empty PNG has about as many.
 LEAST: Final = 0.001
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExportRequest:
-    """The person's request for an export.
-
-    Parameters
-    ----------
-    out : Path
-        A folder for PNG frames, a file for every other format.
-    settings : ExportSettings
-        The document's own, or others for this export.
-    fps : float, optional
-        Pictures per second; the document's rate by default.
-    sources : tuple of Path
-        The input files, which must not be overwritten.
-    """
-
-    out: Path
-    settings: ExportSettings
-    project: str
-    fps: float | None = None
-    sources: tuple[Path, ...] = ()
-
-    @property
-    def names(self) -> FrameNames:
-        return FrameNames(pattern=self.settings.names, project=self.project)
 
 
 class FrameTag(NamedTuple):
@@ -88,6 +49,10 @@ class ExportPlan(FormatSettings):
         First and last timeline frame of the motion of meshes. In a loop the last equals the first.
     fps : float
         Pictures per second.
+    timeline_fps : float
+        Timeline frames per second at the speed of the export.
+    passes : int
+        How often the pictures of the motion come.
     canvas : tuple of int
         Width and height of the document's canvas.
     frame_names : FrameNames
@@ -104,6 +69,8 @@ class ExportPlan(FormatSettings):
     first: int
     span: tuple[int, int]
     fps: float
+    timeline_fps: float
+    passes: int
     canvas: tuple[int, int]
     loop: bool
     frame_names: FrameNames
@@ -112,75 +79,14 @@ class ExportPlan(FormatSettings):
     notices: tuple[str, ...] = ()
 
     @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the pictures in the file, with pixels that the format adds."""
+        return EXPORT_FORMATS[self.format].whole_blocks(self.view.size)
+
+    @property
     def names(self) -> list[str]:
         """File names of the pictures, if each is a file of its own."""
         return self.frame_names.of(self.first, len(self.times))
-
-
-def check_request(document: Document, request: ExportRequest) -> None:
-    """Refuse an impossible request before any long computation.
-
-    Raises `LissomError` if the output path does not suit the format, frames lie outside the
-    animation, or the format cannot be written.
-    """
-    settings = request.settings
-    if not document.exported_layers:
-        raise LissomError(
-            _("there is nothing to export: every layer is hidden or a reference; show a layer")
-        )
-    frames = _frames(document, settings)
-    if frames.first not in document.frames or frames.last not in document.frames:
-        text = (
-            _("frame {first} is not in the animation; choose one from {start} to {end}")
-            if frames.first == frames.last
-            else _(
-                "frames {first} to {last} are not all in the animation; choose some from {start} "
-                "to {end}"
-            )
-        )
-        raise LissomError(
-            text.format(
-                first=frames.first,
-                last=frames.last,
-                start=document.frames.first,
-                end=document.frames.last,
-            )
-        )
-    name, format_ = settings.format, EXPORT_FORMATS[settings.format]
-    check_destination(request.out, name, _names(document, request), request.sources)
-    if settings.size is not None and format_.is_drawn:
-        check_largest_size(name, settings.size)
-        check_blocks(name, settings.size)
-    if request.fps is not None and not format_.is_drawn:
-        raise LissomError(
-            _("{name} plays at any rate; leave out the frames per second").format(name=name)
-        )
-    fps = document.fps if request.fps is None else request.fps
-    if format_.fastest is not None and fps > format_.fastest:
-        raise LissomError(
-            _(
-                "{name} shows at most {fastest:g} frames a second, not {fps:g}; choose fewer "
-                "frames per second, or the format apng or webp"
-            ).format(name=name, fastest=format_.fastest, fps=fps)
-        )
-    if not format_.is_transparent and settings.background == "transparent":
-        raise LissomError(
-            _(
-                "{name} has no transparency: choose a background colour such as #ffffff, or "
-                "the format apng or webp"
-            ).format(name=name)
-        )
-    if format_.extra and (remedy := install_hint(format_.extra)):
-        raise LissomError(
-            _("{name} needs the library {library}, which is not installed: {remedy}").format(
-                name=name, library=LIBRARIES[format_.extra], remedy=remedy
-            )
-        )
-
-
-def list_overwritten_files(document: Document, request: ExportRequest) -> list[str]:
-    """Return the names of existing files that an export replaces."""
-    return find_overwritten_files(request.out, request.settings.format, _names(document, request))
 
 
 def plan_export(
@@ -203,13 +109,14 @@ def plan_export(
     LissomError
         If the motion fails at some frame.
     """
-    settings, frames = request.settings, _frames(document, request.settings)
-    times = tuple(frame_times(document, frames, request.fps))
+    settings, frames = request.settings, exported_frames(document, request.settings)
+    times = export_times(document, settings, request.fps)
     fps = document.fps if request.fps is None else request.fps
     # The pictures of a loop leave out its last frame, which equals the first.
     end = frames.last if settings.frames is not None else document.frames.last
     is_drawn = EXPORT_FORMATS[settings.format].is_drawn
-    seconds = (len(times) if is_drawn else end - frames.first) / fps
+    passes = settings.repeat if is_drawn and not EXPORT_FORMATS[settings.format].is_still else 1
+    seconds = len(times) / fps if is_drawn else (end - frames.first) / fps
     rest = np.concatenate([layer.domain.mesh.vertices for layer in document.exported_layers])
     if settings.framing == "fit" and not document.camera and extent is None:
         extent = measure_extent(document, evaluator, frames)
@@ -223,10 +130,12 @@ def plan_export(
         span=(frames.first, end),
         canvas=document.canvas,
         fps=fps,
+        timeline_fps=document.fps * settings.speed,
+        passes=passes,
         loop=document.loop,
         frame_names=request.names,
-        tags=_tags(document, request, times),
-        soundtrack=find_soundtrack(document, settings, frames.first, seconds),
+        tags=_tags(document, request, times[: len(times) // passes]),
+        soundtrack=find_soundtrack(document, settings, frames.first, seconds, passes=passes),
         **settings.options(),
     )
     if is_drawn:
@@ -241,18 +150,6 @@ def plan_export(
             *list_sound_notices(document, settings, plan.soundtrack),
         ),
     )
-
-
-def _names(document: Document, request: ExportRequest) -> list[str]:
-    """Return the names of the pictures, if each is a file of its own."""
-    frames = _frames(document, request.settings)
-    return request.names.of(frames.first, len(frame_times(document, frames, request.fps)))
-
-
-def _frames(document: Document, settings: ExportSettings) -> FrameRange:
-    frames = settings.frames or export_frame_range(document)
-    is_still = EXPORT_FORMATS[settings.format].is_still
-    return FrameRange(frames.first, frames.first) if is_still else frames
 
 
 def _tags(

@@ -2,6 +2,7 @@
 
 import io
 import wave
+from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -23,6 +24,7 @@ class Soundtrack:
     document: Document
     first: float  # frame
     seconds: float
+    passes: int = 1  # how often the sound comes within these seconds
 
     @property
     def rate(self) -> int:
@@ -56,18 +58,30 @@ class Soundtrack:
         """Yield the samples at a rate, from −1 to 1, in blocks of a size; the last is shorter."""
         mix = SoundMix(self.document, rate)
         begin, count = mix.sample_at(self.first), self.count(rate)
+        # Each pass begins at the sample nearest to its first picture.
+        starts = [round(each * self.seconds * rate / self.passes) for each in range(self.passes)]
         for first in range(0, count, size):
-            yield mix.read(begin + first, min(size, count - first)).clip(-1, 1)
+            parts, at, end = [], first, min(first + size, count)
+            while at < end:
+                number = bisect_right(starts, at)
+                until = min([end, *starts[number : number + 1]])
+                parts.append(mix.read(begin + at - starts[number - 1], until - at))
+                at = until
+            yield np.concatenate(parts).clip(-1, 1)
 
 
 def find_soundtrack(
-    document: Document, settings: ExportSettings, first: float, seconds: float
+    document: Document, settings: ExportSettings, first: float, seconds: float, *, passes: int = 1
 ) -> Soundtrack | None:
-    """Return the soundtrack of an export from a frame on; None if the file carries none."""
+    """Return the soundtrack of an export from a frame on; None if the file carries none.
+
+    At another speed it carries none, because sounds have their own speed.
+    """
     is_carried = EXPORT_FORMATS[settings.format].has_sound and settings.sound
+    is_carried = is_carried and settings.speed == 1
     if not is_carried or all(sound.muted for sound in document.sounds):
         return None
-    return Soundtrack(document=document, first=first, seconds=seconds)
+    return Soundtrack(document=document, first=first, seconds=seconds, passes=passes)
 
 
 def list_sound_notices(
@@ -78,6 +92,8 @@ def list_sound_notices(
     heard = [sound for sound in document.sounds if not sound.muted]
     if not heard or not settings.sound or format_.is_still:
         return []
+    if settings.speed != 1 and format_.has_sound:
+        return [_("sounds have their own speed, so an export at another speed has none")]
     if track is None:
         text = _("the format {name} has no sound; {formats} carry the sounds")
         others = join_names([name for name, each in EXPORT_FORMATS.items() if each.has_sound])

@@ -26,6 +26,8 @@ def plan_for(out: Path, format_: str, **changes: object) -> ExportPlan:
         "first": 0,
         "span": (0.0, FRAMES - 1.0),
         "fps": 24.0,
+        "timeline_fps": 24.0,
+        "passes": 1,
         "canvas": SIZE,
         "loop": True,
         "frame_names": FrameNames(pattern=FRAME_NAMES, project="walk"),

@@ -76,6 +76,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--fps", metavar="F", type=float, help=_("frames per second (default: the project's)")
     )
     parser.add_argument(
+        "--repeat",
+        metavar="N",
+        type=int,
+        help=_("how often the frames play in the file (default: the project's setting, once)"),
+    )
+    parser.add_argument(
+        "--speed",
+        metavar="PERCENT",
+        type=float,
+        help=_("the speed of the motion; 50 is half as fast (default: the project's, 100)"),
+    )
+    parser.add_argument(
         "--size",
         metavar="WxH",
         type=_size,
@@ -161,6 +173,8 @@ def _settings(own: "ExportSettings", arguments: argparse.Namespace, out: Path) -
         "framing": arguments.framing,
         "frames": None if frames is None else FrameRange(*frames),
         "names": arguments.names,
+        "repeat": arguments.repeat,
+        "speed": None if arguments.speed is None else arguments.speed / 100,
         "sound": None if arguments.sound is None else arguments.sound == "all",
     }
     options = {
@@ -176,7 +190,12 @@ def _check_options(name: str, arguments: argparse.Namespace) -> None:
     """Raise `LissomError` for options that the format does not use."""
     format_ = EXPORT_FORMATS[name]
     framing = () if format_.has_frame else ("size", "background", "framing")
-    useless = {option: option for option in (*framing, *(("names",) if format_.suffixes else ()))}
+    timing = (
+        *(("repeat",) if format_.is_still or not format_.is_drawn else ()),
+        *(("speed",) if format_.is_still else ()),
+    )
+    names = ("names",) if format_.suffixes else ()
+    useless = {option: option for option in (*framing, *timing, *names)}
     for group, asking in FormatSettings().options().items():
         if group != format_.options:
             useless |= {each: option.flag for each, option in asking.option_fields().items()}

@@ -40,8 +40,8 @@ def build_html_page(scene: MorphScene, plan: ExportPlan) -> bytes:
     (first, last), colour = plan.span, plan.background
     film = {
         "box": [box.lower.real, box.lower.imag, box.upper.real, box.upper.imag],
-        "seconds": (last - first) / plan.fps,
-        "fps": plan.fps,
+        "seconds": (last - first) / plan.timeline_fps,
+        "fps": plan.timeline_fps,
         "loop": plan.loop,
         **{name: _HEADER + "\n".join(map(shader_source, files)) for name, files in _SHADERS},
         "figures": [_packed(shape) for shape in scene.meshes],

@@ -118,6 +118,8 @@ EXPORT = nested_record(
     Field("frames", optional(RANGE)),
     Field("names", TEXT, legacy_default=FRAME_NAMES),
     Field("sound", FLAG, default=True),
+    Field("repeat", WHOLE, default=1),
+    Field("speed", NUMBER, default=1.0),
     Field(
         "earlier",
         list_of(

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
-from app.document import ExportSettings, FrameRange, export_frame_range, scene_commands
+from app.document import ExportSettings, scene_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing
 from app.editor.actions.project_files import export_settings, exporting
@@ -13,8 +13,9 @@ from app.export import find_shown_box, frame_view
 from app.export_formats import EXPORT_FORMATS
 from app.motion import bounding_box
 from app.render import View
-from app.texts import _, message_of, ngettext
+from app.texts import _, message_of
 from app.ui.panels.export_settings.format_options import draw_format_options
+from app.ui.panels.export_settings.frames import draw_frame_settings
 from app.ui.panels.export_settings.preview import draw_export_preview
 from app.ui.panels.export_settings.sizes import LARGEST, draw_size_fields
 from app.ui.panels.export_settings.sound import draw_sound_option
@@ -31,13 +32,11 @@ from app.ui.style.widgets import (
     option_buttons,
     progress_bar,
     small_text,
-    split_line,
     text_button,
 )
 
 BACKGROUNDS = (("transparent", _("Transparent")), ("colour", _("Colour")))
 FRAMINGS = (("fit", _("All motion")), ("canvas", _("Canvas")))
-RANGES = (("all", _("All frames")), ("own", _("From – to")))
 WHITE, USES = "#ffffff", 26.0  # the latter in em: width of the list of formats
 
 
@@ -68,7 +67,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
         text = _("Frame {frame}, at the playhead, with the pose as it is shown.")
         small_text(look, text.format(frame=now))
     else:
-        chosen = _frames(look, project, chosen)
+        chosen = draw_frame_settings(look, project, chosen)
     if chosen != settings:
         actions.append(do(editing.edit_document, scene_commands.set_export(chosen)))
     heading(look, _("Output"))
@@ -218,43 +217,6 @@ def _canvas(look: Look, project: Project) -> list[Action]:
     if entered is None or entered.size == document.canvas:
         return []
     return [do(editing.edit_document, scene_commands.set_canvas(entered.size))]
-
-
-def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
-    document = project.document
-    frames = export_frame_range(document)
-    label(look, _("Range"))
-    match option_buttons(look, "range", RANGES, "all" if settings.frames is None else "own"):
-        case "all":
-            settings = replace(settings, frames=None)
-        case "own":
-            settings = replace(settings, frames=frames)
-    label(look, _("First, last"))
-    imgui.begin_disabled(settings.frames is None)
-    ends = []
-    widths = split_line(2, imgui.get_style().item_inner_spacing.x)
-    both = zip(("first", "last"), (frames.first, frames.last), widths, strict=True)
-    for name, frame, width in both:
-        imgui.set_next_item_width(width)
-        entered = imgui.input_int(f"##{name} frame", frame, 0)[1]
-        done = imgui.is_item_deactivated_after_edit()
-        ends.append(document.frames.clamp(entered) if done else frame)
-    imgui.end_disabled()
-    if settings.frames is not None and ends != [frames.first, frames.last]:
-        first, last = sorted(ends)
-        settings = replace(settings, frames=FrameRange(first, last))
-    count = frames.last - frames.first + 1
-    text = (
-        ngettext(
-            "{count} picture, {time:.1f} s at {rate:g} fps",
-            "{count} pictures, {time:.1f} s at {rate:g} fps",
-            count,
-        )
-        if EXPORT_FORMATS[settings.format].is_drawn
-        else _("{time:.1f} s, at every frame rate")
-    )
-    small_text(look, text.format(count=count, time=count / document.fps, rate=document.fps))
-    return settings
 
 
 def _output(session: Session, look: Look, project: Project) -> list[Action]:

@@ -16,7 +16,8 @@ from app.document import CAMERA, OPACITY, Camera, FrameRange, Key
 from app.document.model import Document
 from app.errors import LissomError
 from app.export.frame_renderer import FrameRenderer
-from app.export.plan import ExportPlan, ExportRequest, plan_export
+from app.export.plan import ExportPlan, plan_export
+from app.export.request import ExportRequest
 from engine.arrays import Bytes, Complexes
 
 SEEN = BLOB[..., 3] >= 8

@@ -11,7 +11,8 @@ from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 from app.export.destination import FRAMES_TO_FILE, NAMED_LIKE_FILE
-from app.export.plan import ExportPlan, ExportRequest, check_request, plan_export
+from app.export.plan import ExportPlan, FrameTag, plan_export
+from app.export.request import ExportRequest, check_request
 from app.storage import NO_FOLDER
 
 SIZE = (BLOB.shape[1], BLOB.shape[0])
@@ -70,6 +71,33 @@ def test_a_loop_leaves_out_its_last_frame_unless_it_is_asked_for(document, tmp_p
     assert plan_of(loop, tmp_path / "frames").loop
     asked = plan_of(loop, tmp_path / "frames", frames=FrameRange(8, 10))
     assert asked.times == (8, 9, 10)
+
+
+def test_frames_repeat_and_play_slower_or_faster(document, tmp_path):
+    document = replace(document, markers=(Marker(frame=2, name="hop"),))
+    frames = FrameRange(0, 4)
+    plan = plan_of(document, tmp_path / "a.gif", format="gif", frames=frames, repeat=3)
+    assert plan.times == (*range(5),) * 3
+    assert plan.tags == (FrameTag("hop", 2, 4),)
+    slow = plan_of(document, tmp_path / "a.gif", format="gif", frames=frames, speed=0.5, repeat=2)
+    assert slow.times == (0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4) * 2
+    assert (slow.fps, slow.timeline_fps, slow.passes) == (24, 12, 2)
+    fast = plan_of(document, tmp_path / "a.gif", format="gif", frames=frames, speed=2.0)
+    assert fast.times == (0, 2, 4)
+    # A still picture and a model have no repeats; a model has a speed.
+    still = plan_of(document, tmp_path / "a.png", format="picture", repeat=3, speed=0.5)
+    assert still.times == (0,)
+    model = plan_of(document, tmp_path / "a.glb", format="glb", repeat=3, speed=0.5)
+    assert (model.passes, model.timeline_fps, model.span) == (1, 12, (0, 10))
+    for changes in ({"repeat": 0}, {"repeat": 101}, {"speed": 0.01}, {"speed": float("nan")}):
+        with pytest.raises(LissomError):
+            plan_of(document, tmp_path / "a.gif", format="gif", **changes)
+
+
+def test_the_size_of_a_plan_has_the_pixels_that_a_format_adds(document, tmp_path):
+    odd = replace(document, size=(37, 21))
+    plan = plan_of(odd, tmp_path / "a.mp4", format="mp4", framing="canvas", background="#ffffff")
+    assert (plan.view.size, plan.size) == ((37, 21), (38, 22))
 
 
 def test_another_rate_numbers_its_pictures_on_from_the_first_frame(document, tmp_path):

@@ -7,7 +7,8 @@ from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.errors import CANCELLED, LissomError
 from app.export.frame_renderer import FrameRenderer
-from app.export.plan import ExportRequest, plan_export
+from app.export.plan import plan_export
+from app.export.request import ExportRequest
 from app.motion import Evaluator, LayerStages
 from app.motion.extents.extent import bounding_box
 from app.motion.inbetweens.animation import Animation

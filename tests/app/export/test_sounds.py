@@ -15,7 +15,7 @@ from sound_files import clicks, lag, noise, sound, wav
 from app.cli.main import main
 from app.document import Document, ExportSettings
 from app.errors import LissomError
-from app.sound import Soundtrack
+from app.sound import Soundtrack, find_soundtrack, list_sound_notices
 from app.storage.project_file import save_project
 
 FPS = 24.0
@@ -173,3 +173,19 @@ def test_full_disk_leaves_no_file_and_one_sentence(tmp_path, monkeypatch, capfd,
         exported(tmp_path / f"a.{suffix}", document, 0, 48)
     assert list(tmp_path.iterdir()) == []
     assert capfd.readouterr().err == ""
+
+
+def test_the_sound_repeats_with_the_frames():
+    document = spoken()
+    once = Soundtrack(document=document, first=12, seconds=7 / FPS)
+    thrice = Soundtrack(document=document, first=12, seconds=3 * 7 / FPS, passes=3)
+    whole = np.concatenate(list(once.blocks(48_000, 1_000)))
+    repeated = list(thrice.blocks(48_000, 1_000))
+    assert {len(block) for block in repeated[:-1]} == {1_000}
+    assert np.array_equal(np.concatenate(repeated), np.concatenate([whole] * 3))
+    # No sample is lost or doubled where a pass is no whole number of samples.
+    uneven = Soundtrack(document=document, first=0, seconds=1.00001, passes=7)
+    assert sum(map(len, uneven.blocks(44_100, 333))) == uneven.count(44_100)
+    settings = replace(document.export, format="mov", speed=0.5)
+    assert find_soundtrack(document, settings, 0, 1.0) is None
+    assert "another speed" in list_sound_notices(document, settings, None)[0]
