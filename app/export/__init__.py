@@ -5,10 +5,6 @@ Out: PNG frames, animated pictures, sprite sheets, video, models.
 Imports: `app.render`, `app.motion`, `app.storage`.
 """
 
-from app.export.clipboard import (
-    clipboard_program as clipboard_program,
-    put_on_clipboard as put_on_clipboard,
-)
 from app.export.destination import (
     FRAMES as FRAMES,
     PROJECT as PROJECT,
@@ -30,5 +26,9 @@ from app.export.request import (
     check_request as check_request,
     export_times as export_times,
     list_overwritten_files as list_overwritten_files,
+)
+from app.export.writers.clipboard import (
+    clipboard_program as clipboard_program,
+    put_on_clipboard as put_on_clipboard,
 )
 from app.export.writers.spritesheet import sheet_grid as sheet_grid

@@ -31,7 +31,7 @@ EDITS = (
 # Which wait for the pose, change it or its handles, or leave its frame or the project. All others
 # are held to edit nothing: a new one that does so, and is in no list, fails there.
 ALONE = (
-    *("Save", "Export again", "Copy picture", "Close", "Quit", "Undo"),
+    *("Save", "Reload drawing", "Export again", "Copy picture", "Close", "Quit", "Undo"),
     *(
         "Copy",
         "Copy poses of all layers",
