@@ -279,7 +279,7 @@ from app.document.rig.applied_motion import (
     UnreadMotion as UnreadMotion,
     require_motions as require_motions,
 )
-from app.document.rig.chains import Bone as Bone
+from app.document.rig.chains import Bone as Bone, Chain as Chain, find_chains as find_chains
 from app.document.rig.mirror_names import (
     PAIRS as PAIRS,
     SidePairs as SidePairs,

@@ -11,7 +11,9 @@ from app.solving.pose_transfer import (
     SimilarityTransform,
     find_initial_map,
     is_similar,
+    joint_sides,
     solve_from_map,
+    transferred_side,
 )
 
 
@@ -38,7 +40,7 @@ def flip_targets(
     handles = {handle.id: handle for handle in layer.handles}
     partners = mirrored_handles(layer.handles, axis, layer.domain.outline, pairs)
     is_symmetric = is_similar(layer, layer, similarity)
-    targets = {}
+    targets, sides = {}, joint_sides(layer, pose)
     for handle in layer.handles:
         partner = handles.get(partners.get(handle.id, -1))
         place, target = handle.position, pose.targets[handle.id]
@@ -52,6 +54,9 @@ def flip_targets(
             pose.targets[handle.id],
             position=similarity.transform_target(shape, place, target.position, handle.position),
             rotation=None if target.rotation is None else -target.rotation,
+            side=transferred_side(
+                sides.get(handle.id if partner is None else partner.id), mirrors=True
+            ),
         )
     return targets
 

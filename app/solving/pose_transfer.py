@@ -6,7 +6,8 @@ from typing import Self
 
 import numpy as np
 
-from app.document import Layer, Pose, Target
+from app.document import Layer, Pose, Target, find_chains
+from app.rigging import bend_side
 from app.solving.drag.rig import Rig, pins_of
 from app.solving.drag.shown_pose import fit_map
 from engine.arrays import Complexes
@@ -124,6 +125,7 @@ class PoseTransfer:
     def transfer_targets(self, layer: Layer, pose: Pose) -> dict[int, Target]:
         """Return the targets of a layer's handles for a pose of the source, by handle id."""
         shape, carried = self.source.map_of(pose), {}
+        sides = joint_sides(self.source, pose)
         whole = mean_rotation(self.source, shape) if self.is_within_layer else None
         for identity, other in self.pairs.items():
             target, place = pose.targets[other], self.source.handle(other).position
@@ -134,6 +136,7 @@ class PoseTransfer:
                     shape, place, target.position, point, whole
                 ),
                 rotation=-turn if turn is not None and self.similarity.mirrors else turn,
+                side=transferred_side(sides.get(other), mirrors=self.similarity.mirrors),
             )
         return carried
 
@@ -166,6 +169,21 @@ class PoseTransfer:
                 Target(position=self.similarity.transform_target(shape, beside, target, joint))
             )
         return pins
+
+
+def joint_sides(layer: Layer, pose: Pose) -> dict[int, int | None]:
+    """Return the sides to which the joints of bones bend in a pose, by handle id."""
+    sides: dict[int, int | None] = {}
+    for chain in find_chains(layer.bones):
+        for triple in zip(chain.handles, chain.handles[1:], chain.handles[2:], strict=False):
+            places = [pose.targets[identity].position for identity in triple]
+            sides[triple[1]] = bend_side(*places) or pose.targets[triple[1]].side
+    return sides
+
+
+def transferred_side(side: int | None, *, mirrors: bool) -> int | None:
+    """Return the side of a joint in the image of a pose."""
+    return -side if mirrors and side is not None else side
 
 
 def solve_from_map(

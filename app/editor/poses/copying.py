@@ -1,20 +1,28 @@
 """Copying poses and keys, of one layer or of several."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
+from typing import Any
 
 from app.document import (
+    IK_TARGET,
     POSE,
+    TRANSFORM,
     BaseKey,
+    Channel,
+    ChannelKind,
     Clip,
+    Document,
     Keyframe,
     Layer,
     Pose,
     clip_of,
     keyed_pose_at,
     keys_in,
+    mirrored_name,
     segment_time_at,
     track_in,
+    value_at,
 )
 from app.editor import pending_changes
 from app.editor.actions import playback
@@ -56,7 +64,7 @@ def copy_pose_or_keys(session: Session, project: Project) -> None:
     else:
         frame = playback.current_frame(session, project)
         pose_insertion.request_pose_at_playhead(
-            session, project, COPYING, partial(_copy, session, frame)
+            session, project, COPYING, partial(_copy, session, project, frame)
         )
 
 
@@ -83,6 +91,7 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
         for each in document.layers
         if each.id in chosen and (each.handles or len(each.keys) > 1)
     ]
+    channels = _copied_transforms(document, chosen, frame)
     known: dict[int, Pose] = {}
     works = {}
     for layer in layers:
@@ -99,23 +108,46 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
     def take(found: Mapping[int, Pose]) -> None:
         poses = {**known, **found}
         keys = [(each, Keyframe(frame=frame, pose=poses[each.id])) for each in layers]
-        session.clipboard.put([CopiedKeys(layer, (key,), is_pose=True) for layer, key in keys])
+        poses_of = [CopiedKeys(layer, (key,), is_pose=True) for layer, key in keys]
+        session.clipboard.put(poses_of, channels=channels)
+        copied = {layer.id for layer in layers} | {each.channel.layer for each in channels}
+        count = len(copied)
         text = ngettext(
             "Pose of {count} layer at frame {frame} copied.",
             "Poses of {count} layers at frame {frame} copied.",
-            len(keys),
+            count,
         )
-        session.notices.show(text.format(count=len(keys), frame=frame), topic="copy")
+        session.notices.show(text.format(count=count, frame=frame), topic="copy")
 
     if works:
         pending_changes.begin_pending_change(
             session, project, COPYING, lambda: {i: work() for i, work in works.items()}, take
         )
-    elif layers:
+    elif layers or channels:
         take({})
     else:
-        text = _("There are no poses to copy: no layer has a handle or a second key.")
+        text = _("There are no poses to copy: no layer has a handle, a transform or a second key.")
         session.notices.show(text)
+
+
+def _copied_transforms(
+    document: Document, chosen: Collection[int], frame: int
+) -> list[CopiedChannel]:
+    """Return transforms and IK targets of layers at a frame, where they or partners have keys."""
+    names = {layer.name: layer for layer in document.layers}
+    copied = []
+    for layer in document.layers:
+        partner = names.get(mirrored_name(layer.name, document.pairs) or "")
+        kinds: tuple[ChannelKind[Any], ...] = (TRANSFORM, IK_TARGET)
+        for kind in kinds:
+            has_keys = layer.keys_of(kind) or (
+                kind is TRANSFORM and partner is not None and partner.keys_of(TRANSFORM)
+            )
+            if layer.id in chosen and has_keys:
+                channel: Channel[Any] = Channel(kind, layer.id)
+                key = kind.key(frame, value_at(document, channel, frame))
+                copied.append(CopiedChannel(layer, channel, (key,)))
+    return copied
 
 
 def is_copying_keys(session: Session, project: Project) -> bool:
@@ -146,8 +178,12 @@ def _between(rig: Callable[[], Rig], clip: Clip, frame: int, sibling: PoseSample
     return fit_shown_pose(rig(), clip, frame, sibling)
 
 
-def _copy(session: Session, frame: int, layer: Layer, pose: Pose) -> None:
-    _take(session, [CopiedKeys(layer, (Keyframe(frame=frame, pose=pose),))])
+def _copy(session: Session, project: Project, frame: int, layer: Layer, pose: Pose) -> None:
+    channels = _copied_transforms(project.document, {layer.id}, frame)
+    keys = (Keyframe(frame=frame, pose=pose),)
+    # A layer without handles that only turns has no pose of its own.
+    poses = [] if channels and not (layer.handles or len(layer.keys) > 1) else [(layer, keys)]
+    _take(session, [CopiedKeys(*each) for each in poses], others=channels, is_pose=True)
 
 
 def _take(
@@ -155,16 +191,18 @@ def _take(
     copied: Sequence[CopiedKeys],
     tracks: Sequence[CopiedTrack] = (),
     others: Sequence[CopiedChannel] = (),
+    *,
+    is_pose: bool = False,
 ) -> None:
     session.clipboard.put(copied, tracks, others)
     poses = [key.frame for each in copied for key in each.keys]
     rows: list[Sequence[BaseKey]] = [each.keys for each in tracks]
     rows += [each.keys for each in others]
     first, *more = poses + [key.frame for row in rows for key in row]
-    if more:
+    if more and not is_pose:
         count = 1 + len(more)
         text = ngettext("{count} key copied.", KEYS_COPIED, count).format(count=count)
-    elif poses:
+    elif poses or is_pose:
         text = _("Pose at frame {frame} copied.").format(frame=first)
     else:
         text = _("Key at frame {frame} copied.").format(frame=first)

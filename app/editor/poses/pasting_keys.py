@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.document import (
+    IK_TARGET,
     PARENT,
     TRANSFORM,
     BaseKey,
@@ -13,8 +14,8 @@ from app.document import (
     Key,
     Layer,
     Quantity,
-    Transform,
     channel_commands,
+    frames_in,
     mirrored_name,
     source_frame,
 )
@@ -70,6 +71,17 @@ def paste_keys(
     """
     for channel, keys in pasted.items():
         moved = [key.retimed(key.frame + by, 1.0) for key in keys]
+        start = project.document.frames.first
+        if channel.kind is TRANSFORM and moved[0].frame > start:
+            # Before its first key the layer stays as it was.
+            moved = [
+                *(
+                    []
+                    if frames_in(project.document, channel)
+                    else [TRANSFORM.key(start, TRANSFORM.default)]
+                ),
+                *moved,
+            ]
         if len(moved) == 1:
             source = source_frame(project.document, channel, moved[0].frame)
             moved = [each if source is None else each.retimed(source, 1.0) for each in moved]
@@ -108,7 +120,11 @@ def _transferred_key(
         return key
     kind, value = copied.channel.kind, key.value
     if kind is TRANSFORM and way == "flipped":
-        value = Transform(complex(-value.shift.real, value.shift.imag), -value.turn)
+        value = replace(value, shift=-value.shift.conjugate(), turn=-value.turn)
+    if kind is IK_TARGET and way == "flipped" and copied.layer is not None:
+        # The scene is mirrored at the axis of the layer at the root.
+        axis = (copied.layer, *document.all_ancestors(copied.layer.id))[-1].axis
+        value = replace(value, place=2 * axis - value.place.conjugate(), turn=-value.turn)
     names = {each.name: each.id for each in document.layers}
     ids = {identity: name for name, identity in names.items()}
     for each in kind.fields:

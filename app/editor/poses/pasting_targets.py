@@ -1,9 +1,10 @@
 """Pasting the targets of a copied pose on selected handles."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from dataclasses import replace
 from functools import partial
 
-from app.document import Keyframe, Target
+from app.document import Chain, Keyframe, Layer, Target, find_chains
 from app.editor.action import do
 from app.editor.actions.action_spec import ActionSpec, named_action
 from app.editor.actions.posing.pose_drag import set_targets
@@ -55,6 +56,67 @@ FLIP_ON_SELECTED = ActionSpec(
     "Ctrl+Alt+Shift+V",
     why_disabled=partial(paste_on_selected_disabled_reason, way="flipped"),
 )
+
+
+def selected_limb(layer: Layer, selected: Collection[int]) -> tuple[Chain, ...]:
+    """Return the chain of the selected handle, and the chains that start along or beyond it.
+
+    A handle at which several chains start stands for all of them.
+    """
+    chains, found = find_chains(layer.bones), list[Chain]()
+    inside = [each for each in chains if set(each.handles[1:]) & set(selected)]
+    found += inside or [each for each in chains if each.root in selected]
+    for each in found:
+        found += [other for other in chains if other.root == each.end and other not in found]
+    return tuple(found)
+
+
+def paste_on_limb_disabled_reason(session: Session, project: Project, way: PasteMode) -> str | None:
+    """Return why nothing can be pasted on the selected limb; None if it can."""
+    reason = paste_on_selected_disabled_reason(session, project, way)
+    if reason is None and not selected_limb(project.layer, project.selection.handles):
+        return _("Select a handle of a limb with bones first, such as a hand or a foot.")
+    return reason
+
+
+@with_project
+def paste_on_limb(session: Session, project: Project, way: PasteMode) -> None:
+    """Pose the limb of the selected handle as in the copied pose, from its present root on."""
+    landing = find_active_paste_destination(session, project, way)
+    shown = project.layer_runtime.shown
+    if paste_on_limb_disabled_reason(session, project, way) or landing is None or shown is None:
+        return
+    targets = pasted_targets(project, landing, way)
+    places = dict(
+        zip(
+            (handle.id for handle in shown.clip.layer.handles),
+            shown.handle_positions.tolist(),
+            strict=True,
+        )
+    )
+    chains = selected_limb(project.layer, project.selection.handles)
+    wanted: dict[int, Target] = {}
+    root = chains[0].root
+    away = places[root] - targets[root].position if root in targets else 0j
+    for chain in chains:
+        for identity in chain.handles[1:]:
+            if identity in targets:
+                target = targets[identity]
+                wanted[identity] = replace(target, position=target.position + away)
+    set_targets(session, wanted)
+
+
+def _limb_action(way: PasteMode, label: str) -> ActionSpec:
+    return ActionSpec(
+        do(paste_on_limb, way),
+        label,
+        why_disabled=partial(paste_on_limb_disabled_reason, way=way),
+    )
+
+
+PASTE_ON_LIMB = _limb_action("as it is", _("Paste on this limb"))
+FLIP_ON_LIMB = _limb_action("flipped", _("Paste flipped on limb"))
+SWAP_ON_LIMB = _limb_action("swapped", _("Paste swapped on limb"))
 
 
 def pasted_targets(

@@ -29,6 +29,8 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
             *(copying.copy_pose_or_keys, copying.copy_all_poses),
             *(pasting.PASTE, pasting.PASTE_FLIPPED, pasting.PASTE_SWAPPED),
             *(pasting_targets.paste_on_selected, pasting_targets.FLIP_ON_SELECTED),
+            pasting_targets.PASTE_ON_LIMB,
+            *(pasting_targets.FLIP_ON_LIMB, pasting_targets.SWAP_ON_LIMB),
             library.save_pose_to_library,
         ),
         (editing.select_all, editing.deselect_all),

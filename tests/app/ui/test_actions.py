@@ -32,12 +32,9 @@ WITHOUT_PROJECT = {
     ),
     *("Keys and mouse", "Your first animation", "Report a problem…"),
 }
-DISABLED = {
-    *(
-        "Bend layers other way",
-        "Plant layer",
-        "Release layer",
-    ),  # while two handles of a bar with two keys are selected
+DISABLED = {  # while two handles of a bar with two keys are selected
+    *("Bend layers other way", "Plant layer", "Release layer"),
+    *("Paste on this limb", "Paste flipped on limb", "Paste swapped on limb"),
     *(
         "Redo",
         "Bend other way",
