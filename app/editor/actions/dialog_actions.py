@@ -16,6 +16,8 @@ from app.errors import ImportLog, LissomError
 from app.storage import manual_page
 from app.texts import _, ngettext
 
+MANY_EMPTY = 2  # answers of the system's dialogs in a row without a file
+
 
 def show_dialog(session: Session, dialog: Dialog) -> None:
     """Open a dialog in place of the open one."""
@@ -30,6 +32,7 @@ def browse_files(session: Session, dialog: FileDialog) -> None:
 def choose_file(session: Session, dialog: FileDialog, path: Path) -> None:
     """Give a path to the file dialog's action; the next file dialog opens in its folder."""
     session.dialogs.close()
+    session.dialogs.note_answer()
     session.settings.prefer(folder=path.parent)
     dialog.chosen(path).apply(session)
 
@@ -37,6 +40,32 @@ def choose_file(session: Session, dialog: FileDialog, path: Path) -> None:
 def use_own_file_browser(session: Session) -> None:
     """From now on, use Lissom's file browser instead of the system's dialogs."""
     session.dialogs.use_own_file_browser()
+
+
+def replace_system_dialog(session: Session) -> None:
+    """Show Lissom's file browser in place of a system's dialog that did not open."""
+    use_own_file_browser(session)
+    session.notices.show(_("The system's file dialog did not open, so Lissom shows its own."))
+
+
+def note_empty_answer(session: Session) -> None:
+    """Close a system's dialog without an answer; after the second one, offer Lissom's own."""
+    dialog = session.dialogs.current
+    session.dialogs.close()
+    if session.dialogs.note_empty_answer() < MANY_EMPTY or not isinstance(dialog, FileDialog):
+        return
+    session.notices.show(
+        _("Did the system's file dialog not open?"),
+        topic="file dialog",
+        label=_("Use Lissom's own dialog"),
+        action=do(show_own_file_browser, dialog),
+    )
+
+
+def show_own_file_browser(session: Session, dialog: FileDialog) -> None:
+    """Ask for a file again, in Lissom's file browser."""
+    use_own_file_browser(session)
+    session.dialogs.show(dialog)
 
 
 @named_action(_("Keys and mouse"), "Shift+F1", needs_project=False)

@@ -116,6 +116,7 @@ class DialogState(Revised):
 
     current: Dialog | None = None
     uses_system: bool = False  # whether the system's own file dialogs are used
+    empty_answers: int = 0  # of the system's dialogs, in a row
 
     def show(self, dialog: Dialog | None) -> None:
         """Open a dialog in place of the open one."""
@@ -128,6 +129,14 @@ class DialogState(Revised):
     def close(self) -> None:
         """Close the dialog without an action; the dialog below a report returns."""
         self.current = self.current.behind if isinstance(self.current, ProblemReport) else None
+
+    def note_empty_answer(self) -> int:
+        """Count an answer without a file, and return how many came in a row."""
+        self.empty_answers += 1
+        return self.empty_answers
+
+    def note_answer(self) -> None:
+        self.empty_answers = 0
 
     def use_own_file_browser(self) -> None:
         """From now on, use Lissom's file browser instead of the system's dialogs."""

@@ -21,6 +21,7 @@ from app.editor.actions.dialog_actions import (
     choose_keys,
     close_dialog,
     edit_shortcut_sheet,
+    replace_system_dialog,
     use_own_file_browser,
 )
 from app.errors import display_name
@@ -36,6 +37,7 @@ from app.ui.style.widgets import main_button
 
 GOING_ON = (
     browse_files,
+    replace_system_dialog,
     use_own_file_browser,
     error_reports.edit_report_text,
     edit_shortcut_sheet,

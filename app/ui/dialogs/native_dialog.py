@@ -10,13 +10,14 @@ from imgui_bundle import portable_file_dialogs
 from app.editor import Action, FileDialog, Question, do
 from app.editor.actions.dialog_actions import (
     choose_file,
-    close_dialog,
+    note_empty_answer,
+    replace_system_dialog,
     show_dialog,
-    use_own_file_browser,
 )
 from app.errors import display_name
 from app.export import choose_frame_folder
 from app.texts import _
+from app.ui.dialogs.dialog_program import DialogProgram
 
 # Each of these programs shows the file dialogs of a Linux desktop.
 PROGRAMS: Final = ("zenity", "kdialog", "matedialog", "qarma")
@@ -44,36 +45,48 @@ class NativeDialog:
 
     def poll(self, now: float) -> list[Action]:
         """Return the actions of the person's answer, if there is one. Never waits."""
-        if not self._running.ready(0):
-            return []
-        try:
+        if isinstance(self._running, DialogProgram):
+            if not self._running.is_over:
+                return []
+            chosen, has_failed = self._running.answer(), self._running.has_failed
+        else:
+            if not self._running.ready(0):
+                return []
             result = self._running.result()
-        except UnicodeDecodeError:
-            # The path is not UTF-8, and the system has no other form of it.
-            return [do(use_own_file_browser)]
-        chosen = result if isinstance(result, str) else next(iter(result), "")
-        if chosen:
+            chosen = result if isinstance(result, str) else next(iter(result), "")
+            has_failed = False
+        if chosen and not has_failed:
             return [_follow(self.dialog, Path(chosen))]
-        return [do(use_own_file_browser if now - self._opened < TOO_SOON else close_dialog)]
+        if has_failed or now - self._opened < TOO_SOON:
+            return [do(replace_system_dialog)]
+        return [do(note_empty_answer)]
 
     def close(self) -> None:
-        if not self._running.ready(0):
+        if isinstance(self._running, DialogProgram):
+            self._running.close()
+        elif not self._running.ready(0):
             self._running.kill()
 
 
 Running = (
-    portable_file_dialogs.open_file
+    DialogProgram
+    | portable_file_dialogs.open_file
     | portable_file_dialogs.save_file
     | portable_file_dialogs.select_folder
 )
 
 
 def _open(dialog: FileDialog) -> Running:
+    if sys.platform not in {"win32", "darwin"}:
+        # Started here, because the library does not tell a failure from a cancelled dialog.
+        program = find_system_dialogs()
+        if program is not None:
+            return DialogProgram(program, dialog, _filters(dialog.suffixes))
     # With a slash at its end, the folder is where to begin and not the preselected file.
     folder = display_name(f"{dialog.folder}/")
     if dialog.wants_folder:
         return portable_file_dialogs.select_folder(dialog.title, folder)
-    filters = _filters(dialog.suffixes)
+    filters = [*_filters(dialog.suffixes)]
     if dialog.writes:
         # macOS accepts only an existing start folder.
         start = folder if sys.platform == "darwin" else display_name(dialog.folder / dialog.name)
@@ -81,10 +94,10 @@ def _open(dialog: FileDialog) -> Running:
     return portable_file_dialogs.open_file(dialog.title, folder, filters)
 
 
-def _filters(suffixes: tuple[str, ...]) -> list[str]:
+def _filters(suffixes: tuple[str, ...]) -> tuple[str, str]:
     """Return names and patterns of the filter. Cameras and old programs write capital suffixes."""
     names = ", ".join(suffixes[:MOST_NAMED]) + (", …" if len(suffixes) > MOST_NAMED else "")
-    return [names, " ".join(f"*{form}" for s in suffixes for form in (s, s.upper()))]
+    return names, " ".join(f"*{form}" for s in suffixes for form in (s, s.upper()))
 
 
 def _follow(dialog: FileDialog, chosen: Path) -> Action:

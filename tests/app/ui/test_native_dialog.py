@@ -5,6 +5,7 @@ import os
 import shutil
 import sys
 from functools import partial
+from pathlib import Path
 
 import pytest
 
@@ -188,16 +189,13 @@ def test_a_folder_is_chosen_as_such(program, ask, chosen, tmp_path):
     assert chosen == [empty]
 
 
-def test_a_name_that_is_not_utf_8_is_left_to_our_own_browser(
-    window, program, ask, chosen, tmp_path
-):
+def test_a_name_that_is_not_utf_8_is_taken_as_it_is(window, program, ask, chosen, tmp_path):
     ask(folder=tmp_path / os.fsdecode(b"caf\xe9"), name=os.fsdecode(b"\xe9.png"))
     assert f"--filename={tmp_path}/caf\N{REPLACEMENT CHARACTER}/" in " ".join(program.asked())
     program.answer(os.fsdecode(b"/caf\xe9.png"))
     program.wait_for_the_window()
-    assert not window.session.dialogs.uses_system
-    assert isinstance(window.session.dialogs.current, FileDialog)
-    assert chosen == []
+    assert window.session.dialogs.current is None
+    assert chosen == [Path(os.fsdecode(b"/caf\xe9.png"))]
 
 
 def test_cancelling_the_dialog_closes_it(window, program, ask, chosen):
@@ -222,6 +220,50 @@ def test_a_program_that_cannot_show_anything_is_replaced_by_our_browser(
     window.frames(2)
     window.run(lambda robot: robot.item_click("//###dialog/Save"))
     assert chosen == [tmp_path / "walk.png"]
+
+
+def test_a_program_that_fails_late_is_replaced_by_our_browser_with_a_word(
+    window, program, ask, chosen, tmp_path
+):
+    ask()
+    program.asked()
+    later(window)
+    window.frames(3)
+    program.answer("", status=255)
+    program.wait_for_the_window()
+    assert not window.session.dialogs.uses_system
+    assert [toast.text for toast in window.session.notices.toasts] == [
+        "The system's file dialog did not open, so Lissom shows its own."
+    ]
+    window.frames(2)
+    window.run(lambda robot: robot.item_click("//###dialog/Save"))
+    assert chosen == [tmp_path / "walk.png"]
+
+
+def test_a_second_empty_answer_offers_our_browser(window, program, ask, chosen, tmp_path):
+    for count in (1, 2):
+        ask()
+        program.asked()
+        later(window)
+        window.frames(3)
+        program.answer("", status=1)
+        program.wait_for_the_window()
+        offers = [each for each in window.session.notices.toasts if each.label]
+        assert len(offers) == count - 1
+        for name in ("asked", "answer"):
+            (program.place / name).unlink()
+    window.act(offers[0].action.verb, *offers[0].action.arguments)
+    window.frames(2)
+    window.run(lambda robot: robot.item_click("//###dialog/Save"))
+    assert chosen == [tmp_path / "walk.png"]
+
+
+def test_a_program_that_does_not_start_is_replaced_by_our_browser(window, program, ask):
+    (program.place / "zenity").write_text("#!/no/such/interpreter")
+    ask()
+    window.frames(3)
+    assert isinstance(window.session.dialogs.current, FileDialog)
+    assert not window.session.dialogs.uses_system
 
 
 def test_the_person_may_prefer_our_browser(window, program, ask, chosen, tmp_path):
