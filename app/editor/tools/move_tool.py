@@ -26,7 +26,7 @@ class MoveTool(PoseTool):
 
     @classmethod
     def mode(cls, session: Session, _project: Project) -> str:
-        return _("Moving the whole layer") if session.tools.mode == "move" else ""
+        return _("Moving and turning whole layers") if session.tools.mode == "move" else ""
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:

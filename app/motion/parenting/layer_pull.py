@@ -14,8 +14,10 @@ from app.document import (
     Transform,
     bones_above,
     layer_value_at,
+    layers_with_targets,
 )
-from app.motion.parenting.chain import UNMOVED, KeptTransform, PivotFrameAt
+from app.motion.parenting.attach import anchor_or_default
+from app.motion.parenting.chain import UNMOVED, KeptTransform, PivotFrameAt, parent_links
 from app.motion.parenting.layer_limbs import (
     LayerPlaces,
     Turns,
@@ -58,14 +60,37 @@ class LayerPull:
 
     @property
     def joint(self) -> complex:
-        """The place of the layer's joint."""
-        return self._place(self.layer, self._turns)[1]
+        """The place of the layer's joint; without a parent, of its anchor or its deepest point."""
+        if self._has_joint:
+            return self._place(self.layer, self._turns)[1]
+        placement, point = self.placement, self._posed_anchor
+        return placement.factor * point + placement.shift
+
+    @property
+    def _has_joint(self) -> bool:
+        return parent_links(self.document, self.layer, self.frame)[0].has_joint
+
+    @property
+    def _posed_anchor(self) -> complex:
+        """The place of a layer's anchor, as posed, in the layer's space."""
+        own = self.document.layer(self.layer)
+        return self.hinge(own, anchor_or_default(own)).position
 
     @property
     def target(self) -> IkTarget | None:
         """The IK target of the layer, if it has keys."""
         own = self.document.layer(self.layer)
         return layer_value_at(self.document, own, IK_TARGET, self._at)
+
+    @property
+    def planted_end(self) -> Layer | None:
+        """The layer whose IK target bends the layer as one of its bones, if any."""
+        for end in layers_with_targets(self.document):
+            target = layer_value_at(self.document, end, IK_TARGET, self._at)
+            bones = bones_above(self.document, end.id, self.frame)
+            if target is not None and target.mix > 0 and self.layer in {each.id for each in bones}:
+                return end
+        return None
 
     def present_target(self) -> IkTarget:
         """Return the IK target that keeps the layer where it is."""
@@ -125,12 +150,26 @@ class LayerPull:
 
     def turned(self, turn: float) -> dict[int, Transform]:
         """Return the layer's transform, turned at its joint by an angle in radians."""
+        if not self._has_joint:
+            own = self._transform(self.layer)
+            return self._about_anchor(replace(own, turn=own.turn + turn))
         return self._with({**self._turns, self.layer: self._turns.get(self.layer, 0.0) + turn})
 
     def scaled(self, factor: float) -> dict[int, Transform]:
         """Return the layer's transform, scaled at its joint."""
         own = self._transform(self.layer)
-        return {self.layer: replace(own, scale=own.scale * factor)}
+        scaled = replace(own, scale=own.scale * factor)
+        return {self.layer: scaled} if self._has_joint else self._about_anchor(scaled)
+
+    def _about_anchor(self, changed: Transform) -> dict[int, Transform]:
+        """Return a changed transform of a layer without a parent; its posed anchor stays.
+
+        The transform is about the pivot, and a pose may move the anchor away from there.
+        """
+        arm = self._posed_anchor - self.document.layer(self.layer).pivot
+        own = self._transform(self.layer)
+        shift = own.shift + (own.factor - changed.factor) * arm
+        return {self.layer: replace(changed, shift=shift)}
 
     def moved(self, way: complex) -> dict[int, Transform]:
         """Return the layer's transform, moved in the scene, away from its joint."""

@@ -79,7 +79,7 @@ class PullTool(Tool):
         """Pull the layer to the pointer."""
         here = to_scene(self.project, place)
         self.moved = self.moved or self.is_away(session, self.start, here)
-        if not self.moved:
+        if not self.moved or (not self.shifts and _tell_if_planted(session, self.pull)):
             return
         target, alone = self.pull.target, session.tools.is_snapping
         if self.shifts:
@@ -163,6 +163,8 @@ class JointGripTool(Tool):
             self._apply(session)
 
     def _apply(self, session: Session) -> None:
+        if self.grip == "ring" and _tell_if_planted(session, self.pull):
+            return
         if self.grip == "scale":
             found, label = self.pull.scaled(math.exp(self.change)), _("Scale layer")
         else:
@@ -202,6 +204,16 @@ class JointGripTool(Tool):
         if self.grip == "scale":
             return (Hint(_("type a number of percent")),)
         return (Hint(_("turn in steps of 15°"), "ctrl"), Hint(_("type a number of degrees")))
+
+
+def _tell_if_planted(session: Session, pull: LayerPull) -> bool:
+    """Show a notice if an IK target bends the layer, so that it cannot turn by itself."""
+    end = pull.planted_end
+    if end is not None:
+        text = _("{layer} bends to the IK target of {end}. Drag {end}, or release it first.")
+        name = pull.document.layer(pull.layer).name
+        session.notices.show(text.format(layer=name, end=end.name), topic="planted")
+    return end is not None
 
 
 def _pressed_layer(session: Session, project: Project, spot: PointerHit) -> int | None:

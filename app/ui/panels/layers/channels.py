@@ -27,6 +27,8 @@ from app.editor import Action, do
 from app.editor.actions.timing.channel_keys import set_channel_value
 from app.editor.layering.layer_posing import (
     apply_own_transform,
+    plant_layer,
+    release_layer,
     set_ik_parents,
     set_transforms,
 )
@@ -55,17 +57,18 @@ def draw_transform_channel(
     channel = Channel(TRANSFORM, layer.id)
     transform = value_at(document, channel, frame)
     shift = transform.shift
-    label(look, _("Transform"))
-    entered = _draw_fields(
+    entered, actions = _draw_fields(
+        document,
+        look,
+        channel,
+        frame,
         {
             "right": (shift.real, "%.1f px", MOVES["right"]),
             "up": (shift.imag, "%.1f px", MOVES["up"]),
             "turn": (math.degrees(transform.turn), "%.1f°", MOVES["turn"]),
             "scale": (100 * transform.scale, "%.0f %%", MOVES["scale"]),
         },
-        diamond_room(look),
     )
-    actions = draw_key_diamond(document, look, channel, frame)
     if entered is not None:
         right, up, turn, scale = entered
         scale = min(max(scale / 100, 1 / MAX_SCALE), MAX_SCALE)
@@ -101,22 +104,31 @@ def draw_ik_target(document: Document, look: Look, layer: Layer, frame: int) -> 
     channel, keys = Channel(IK_TARGET, layer.id), layer.keys_of(IK_TARGET)
     if keys:
         target = value_at(document, channel, frame)
-        label(look, _("IK target"))
-        entered = _draw_fields(
+        entered, keyed = _draw_fields(
+            document,
+            look,
+            channel,
+            frame,
             {
                 "x": (target.place.real, "%.1f px", _("Place in the scene from the left")),
                 "y": (target.place.imag, "%.1f px", _("Place in the scene from below")),
                 "target turn": (math.degrees(target.turn), "%.1f°", _("Rotation in the scene")),
                 "mix": (100 * target.mix, "%.0f %%", _("0 % follows the parents")),
             },
-            diamond_room(look),
         )
-        actions += draw_key_diamond(document, look, channel, frame)
+        actions += keyed
         if entered is not None:
             x, y, turn, mix = entered
             mix = min(max(mix / 100, 0.0), 1.0)
             value = IkTarget(complex(x, y), math.radians(turn), mix)
             actions.append(do(set_channel_value, channel, value))
+    if bones > 1:
+        is_planted = keys and value_at(document, channel, frame).mix > 0
+        verb, text = (
+            (release_layer, _("Release layer")) if is_planted else (plant_layer, _("Plant layer"))
+        )
+        if imgui.button(text, ImVec2(FILL, 0)):
+            actions.append(do(verb))
     return actions
 
 
@@ -127,21 +139,32 @@ def _format_bones(count: int) -> str:
 
 
 def _draw_fields(
-    values: Mapping[str, tuple[float, str, str]], room: float
-) -> tuple[float, ...] | None:
-    """Draw number fields in a row, each with its format and tooltip; return them if one changed."""
-    gap = imgui.get_style().item_inner_spacing.x
-    each = (imgui.get_content_region_avail().x - room - (len(values) - 1) * gap) / len(values)
-    entered, has_changed = [], False
+    document: Document,
+    look: Look,
+    channel: Channel[Any],
+    frame: int,
+    values: Mapping[str, tuple[float, str, str]],
+) -> tuple[tuple[float, ...] | None, list[Action]]:
+    """Draw a channel's numbers, two in a row, each with its format and tooltip, and its diamond.
+
+    Return all numbers if one was changed, and the actions of the diamond.
+    """
+    gap, room = imgui.get_style().item_inner_spacing.x, diamond_room(look)
+    entered, has_changed, actions = list[float](), False, list[Action]()
     for index, (name, (value, text, hint)) in enumerate(values.items()):
-        if index:
+        if index % 2:
             imgui.same_line(0, gap)
-        imgui.set_next_item_width(each)
+        else:
+            label(look, "" if index else _(channel.kind.label))
+            width = (imgui.get_content_region_avail().x - room - gap) / 2
+        imgui.set_next_item_width(width)
         found = number_field(f"moved {name}", value, text)
         draw_tooltip(hint)
         has_changed |= found is not None
         entered.append(value if found is None else found)
-    return tuple(entered) if has_changed else None
+        if index == 1:
+            actions += draw_key_diamond(document, look, channel, frame)
+    return tuple(entered) if has_changed else None, actions
 
 
 def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:

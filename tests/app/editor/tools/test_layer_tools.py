@@ -248,3 +248,29 @@ def test_number_of_parents_that_bend_can_be_set(session):
     settle(session)
     pull(session, FOOT, ANKLE + 10, ANKLE + 10j)
     assert placements(session)[FOOT].factor == pytest.approx(1j, abs=1e-6)
+
+
+def test_bone_of_a_planted_foot_is_not_turned_in_vain(session):
+    set_active_layer(session, FOOT)
+    layer_posing.plant_layer(session)
+    settle(session)
+    document = session.project.document
+    pull(session, SHIN, KNEE + 5, KNEE + 9j)
+    assert session.project.document is document
+    toast = session.notices.toasts[-1].text
+    assert "bends to the IK target of" in toast
+
+
+def test_ring_of_a_posed_root_turns_it_about_its_posed_anchor(session):
+    set_active_layer(session, BODY)
+    settle(session)
+    session.project.history.do(shape_commands.set_anchor(BODY, HIP))
+    settle(session)
+    drag(session, PointerHit(place=HIP, layer=BODY, on_shape=True, em=EM), HIP + 20 + 10j)
+    around = HIP + 20 + 10j
+    shown = session.project.layer_runtime.shown
+    before = shown.placement.apply(shown.positions)
+    drag(session, PointerHit(place=around + RING * EM, em=EM), around + RING * EM * 1j)
+    shown = session.project.layer_runtime.shown
+    wanted = around + 1j * (before - around)
+    np.testing.assert_allclose(shown.placement.apply(shown.positions), wanted, rtol=0, atol=1e-3)
