@@ -16,11 +16,13 @@ from sound_files import sine, sound, wav
 from app.document import (
     BLENDS,
     LAYER_KINDS,
+    TRANSFORM,
     VISIBILITY,
     Document,
     ExportSettings,
     FrameRange,
     Group,
+    Transform,
 )
 from app.export import ExportRequest, FrameRenderer, MeshExport, plan_export
 from app.motion import Evaluator
@@ -123,6 +125,27 @@ def test_the_browser_shows_what_the_renderer_draws(browser, tmp_path):
     assert np.abs(premultiplied(shown(page, 0)) - premultiplied(found)).max() > 100
     gl.release()
     assert page.run("gl.getError()") == 0
+
+
+def test_layers_that_turn_as_a_whole_move_in_a_page(browser, tmp_path):
+    document, out = two_blobs(), tmp_path / "turn.html"
+    turns = (
+        TRANSFORM.key(0, Transform(scale=0.8)),
+        TRANSFORM.key(4, Transform(12 - 9j, 1.9, 1.2)),
+        TRANSFORM.key(8, Transform(scale=0.8)),
+    )
+    document = document.with_layer(document.layer(1).with_keys_of(TRANSFORM, turns))
+    draw = exported(document, out)
+    page, gl = opened(browser, out), create_context()
+    page.run("lissom.pause()")
+    pictures = []
+    for seconds in (0.0, 0.06, 0.11):
+        found, wanted = shown(page, seconds), draw(gl, document.fps * seconds)
+        pictures.append(premultiplied(found))
+        # Edges may lie a tenth of the tolerance beside their place.
+        assert np.abs(pictures[-1] - premultiplied(wanted)).mean() <= 2 * MEAN
+    gl.release()
+    assert np.abs(pictures[-1] - pictures[0]).mean() > 10 * MEAN
 
 
 def test_sliders_move_a_page(browser, tmp_path):

@@ -13,15 +13,20 @@ from app.document import (
     HOLD,
     IK_TARGET,
     TRANSFORM,
+    Handle,
     IkTarget,
+    Spring,
+    Target,
     Transform,
     bones_above,
+    clip_of,
     joint_commands,
     layer_commands,
 )
 from app.errors import LissomError
 from app.motion import Evaluator, ParentTransforms
 from app.motion.parenting.layer_pull import LayerPull
+from app.motion.parenting.parent_transforms import find_parent_motion
 from app.rigging import bend_side
 
 FRAMES = (0, 7.5, 20, 31.0, 48)
@@ -229,6 +234,26 @@ def test_held_target_holds_until_the_next_key():
     joints, free = ParentTransforms(document), ParentTransforms(limb_chain())
     assert_allclose(joint_place(document, joints, END, 19.9), first.place, rtol=0, atol=1e-9)
     assert_allclose(joints.placement(END, 20), free.placement(END, 20), rtol=0, atol=1e-12)
+
+
+def test_springs_feel_the_target_of_their_limb():
+    free, moving = (
+        limb_chain(),
+        limb(IK_TARGET.key(0, IkTarget(CENTRE - 110j)), IK_TARGET.key(20, IkTarget(CENTRE - 60j))),
+    )
+    for number, joints in ((1, True), (2, True), (END, True)):
+        carried = find_parent_motion(moving, number)
+        places = [carried(frame) for frame in (0.0, 20.0)]
+        assert (places[0] != places[1]) == joints
+    handled = []
+    for document in (free, moving):
+        layer = document.layer(1)
+        handle = Handle(id=0, name="tip", position=CENTRE + 0j)
+        poses = [replace(pose, targets={0: Target(position=CENTRE + 0j)}) for pose in layer.poses]
+        layer = layer.with_poses(poses, handles=(handle,), next_handle=1)
+        spring = Spring(handle=0, frequency=2, damping=0.2)
+        handled.append(document.with_layer(replace(layer, springs=(spring,))))
+    assert clip_of(handled[0], 1) != clip_of(handled[1], 1), "its motion is another one"
 
 
 def test_frames_for_display_are_those_of_exports():
