@@ -1,5 +1,7 @@
 """Limbs of layers in a pose script."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from app.document import IK_TARGET, Document, bones_above, joint_commands, layers_with_targets
@@ -10,6 +12,7 @@ from app.solving.script_scene import find_layer
 from app.texts import _
 
 REACHED = 0.5  # pixels from an IK target
+SHORTEST = 0.5  # pixels: least length of a bone
 
 
 def with_limbs(document: Document, script: PoseScript) -> Document:
@@ -28,6 +31,15 @@ def with_limbs(document: Document, script: PoseScript) -> Document:
                         "bones: {child!r} is not attached to {parent!r}. Name the layers from "
                         "root to end, each attached to the one before"
                     ).format(child=child.name, parent=parent.name)
+                )
+        joints = [layer.pivot for layer in (*parents, end)]
+        for (one, layer), (other, at) in pairwise(zip((*parents, end), joints, strict=True)):
+            if abs(layer - at) < SHORTEST:
+                raise LissomError(
+                    _(
+                        "bones: {one!r} and {other!r} have their joints at the same place. Move "
+                        "one of them, so that {one!r} has a length"
+                    ).format(one=one.name, other=other.name)
                 )
         document = joint_commands.set_ik_parents(end.id, len(parents))(document)
         document = joint_commands.set_pole_side(end.id, side=limb.side)(document)

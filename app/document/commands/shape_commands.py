@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from app.cut_out import CutLine, CutOut, Stroke
+from app.document.channels.kinds import TRANSFORM
 from app.document.commands.command import layer_command
 from app.document.keyframe import Pose
 from app.document.layer import Layer
@@ -22,8 +23,21 @@ def set_variant(layer: Layer, variant: Variant) -> Layer:
 
 @layer_command(_("Set anchor"))
 def set_anchor(layer: Layer, anchor: complex | None) -> Layer:
-    """Set the point whose position and rotation are interpolated directly; None is automatic."""
-    return layer if anchor == layer.anchor else replace(layer, anchor=anchor)
+    """Set the point whose position and rotation are interpolated directly; None is automatic.
+
+    The transform of a layer without a parent is about the anchor. Its keys keep their places.
+    """
+    if anchor == layer.anchor:
+        return layer
+    changed = replace(layer, anchor=anchor)
+    if layer.attachments:
+        return changed
+    arm = changed.pivot - layer.pivot
+    moved = (
+        replace(key, value=replace(key.value, shift=key.value.shift + (key.value.factor - 1) * arm))
+        for key in layer.keys_of(TRANSFORM)
+    )
+    return changed.with_keys_of(TRANSFORM, moved)
 
 
 @layer_command(_("Set auto-pins"))

@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 from typing import Self
 
-from app.editor.actions import playback
-from app.editor.actions.posing.handles import set_anchor, toggle_anchor_at_handle
-from app.editor.layering.parenting import attach_layer
+from app.editor.layering.anchors import set_anchor, toggle_anchor_at_handle
 from app.editor.parts.tools import Hint
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.tools.tool import PointerHit, Tool, handle_places, to_scene
+from app.editor.tools.tool import PointerHit, Tool
 from app.texts import _
 
 
@@ -35,16 +33,7 @@ class AnchorTool(Tool):
         if not spot.ctrl or spot.on_ring or not (spot.on_shape or spot.handle is not None):
             return None
         anchoring = cls(project=project)
-        layer, frame = project.layer, playback.current_frame(session, project)
-        joint = layer.attachment_key_at(frame)
-        if joint is not None and joint.parent is not None:
-            # The joint moves along, so that the picture stays.
-            place = spot.place
-            if spot.handle is not None:
-                place = handle_places(project)[spot.handle]
-            turns = joint.inherits_rotation
-            attach_layer(session, layer.id, joint.parent, turns, to_scene(project, place))
-        elif spot.handle is not None:
+        if spot.handle is not None:
             toggle_anchor_at_handle(session, spot.handle, gesture=anchoring)
         else:
             set_anchor(session, spot.place, gesture=anchoring)

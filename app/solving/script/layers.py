@@ -77,6 +77,10 @@ def parse_limbs(content: object, names: Sequence[str | None]) -> tuple[ScriptLim
             raise LissomError(
                 _("two rows of bones end at {name!r}; leave one out").format(name=name)
             )
+    for name, count in Counter(each for limb in limbs for each in limb.layers[:-1]).items():
+        if count > 1:
+            text = _("{name!r} is in two rows of bones; a layer can bend in one of them only")
+            raise LissomError(text.format(name=name))
     return tuple(limbs)
 
 

@@ -13,11 +13,11 @@ from app.editor.actions.layer_setup import handle_editing
 from app.editor.actions.posing.handles import (
     remove_handles,
     suggest_handles,
-    toggle_anchor_at_handle,
 )
 from app.editor.actions.posing.limb_editing import flip_selected_joints
 from app.editor.actions.posing.pose_drag import free_rotation, pin_selected_handles
 from app.editor.actions.timing import keys, tracks
+from app.editor.layering.anchors import toggle_anchor_at_handle
 from app.editor.layering.layer_selection import reset_tree_rows
 from app.editor.poses import copying, pasting
 from app.editor.tools import move_tool, tool_pointer

@@ -690,12 +690,15 @@ def test_script_names_layers_that_bend_as_a_limb(drawing):
         ([["arm"]], "at least two different layers"),
         ([["body", "leg"]], "the script has no layer 'leg'"),
         ([["body", "arm"], ["body", "arm"]], "two rows of bones end at 'arm'"),
+        ([["body", "arm"], ["body", "patch"]], "'body' is in two rows of bones"),
         ([{"layers": ["body", "arm"], "side": 3}], "must be -1, 0 or 1, not 3"),
     ],
 )
 def test_wrong_limbs_of_layers_are_refused_by_name(drawing, bones, message):
     with pytest.raises(LissomError, match=message):
-        pose_document(drawing, parse_pose_script({**LIMB, "bones": bones}), str)
+        layers = [*LIMB["layers"], SCRIPT["layers"][2]]
+        script = parse_pose_script({**LIMB, "layers": layers, "bones": bones})
+        pose_document(drawing, script, str)
 
 
 def test_what_fades_in_is_seen_in_a_model(folder):

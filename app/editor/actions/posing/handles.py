@@ -1,4 +1,4 @@
-"""Handles and the anchor: adding, deleting and setting them, also in the unkeyed pose."""
+"""Handles: adding, deleting and setting them, also in the unkeyed pose."""
 
 from dataclasses import replace
 
@@ -11,7 +11,6 @@ from app.document import (
     layer_commands,
     mirrored_handles_by_name,
     mirrored_name,
-    shape_commands,
 )
 from app.editor.action import do
 from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
@@ -33,7 +32,7 @@ def add_handle(
     """Add a handle at a shown place of the shape; nothing moves."""
     if project.layer_runtime.shown is None:
         return
-    rest = _at_rest(project.layer_runtime.shown, place)
+    rest = find_rest_place(project.layer_runtime.shown, place)
     identity = project.layer.next_handle
     project.history.do(
         handle_commands.add_handle(project.selection.active, rest), gesture=gesture or object()
@@ -156,33 +155,7 @@ def _is_inside(domain: MeshedDomain, place: complex) -> bool:
     return bool(contains(outline, np.array([place]), holes=holes)[0])
 
 
-@with_project
-def toggle_anchor_at_handle(
-    _: Session, project: Project, identity: int, *, gesture: object | None = None
-) -> None:
-    """Make a handle's point the anchor; if it is the anchor, let the engine choose again."""
-    place = project.layer.handle(identity).position
-    project.history.do(
-        shape_commands.set_anchor(
-            project.selection.active, None if project.layer.anchor == place else place
-        ),
-        gesture=gesture,
-    )
-
-
-@with_project
-def set_anchor(
-    _: Session, project: Project, place: complex, *, gesture: object | None = None
-) -> None:
-    """Make the shape's point at a shown place the anchor."""
-    if project.layer_runtime.shown:
-        rest = _at_rest(project.layer_runtime.shown, place)
-        project.history.do(
-            shape_commands.set_anchor(project.selection.active, rest), gesture=gesture
-        )
-
-
-def _at_rest(shown: LayerFrame, place: complex) -> complex:
+def find_rest_place(shown: LayerFrame, place: complex) -> complex:
     """Return the rest place of the point shown at a place."""
     found = shown.mesh.locate(np.array([place]), shown.positions)
     return complex(found.positions_on(shown.mesh.domain.mesh.vertices)[0])

@@ -5,7 +5,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from app.document import Handle, shape_commands
 from app.editor import Action, Project, do
 from app.editor.actions import editing
-from app.editor.actions.posing.handles import toggle_anchor_at_handle
+from app.editor.layering.anchors import toggle_anchor_at_handle
 from app.texts import _
 from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import Look

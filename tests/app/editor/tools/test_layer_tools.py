@@ -274,3 +274,14 @@ def test_ring_of_a_posed_root_turns_it_about_its_posed_anchor(session):
     shown = session.project.layer_runtime.shown
     wanted = around + 1j * (before - around)
     np.testing.assert_allclose(shown.placement.apply(shown.positions), wanted, rtol=0, atol=1e-3)
+
+
+def test_anchor_of_a_turned_root_moves_without_the_picture(session):
+    move = Transform(5 + 2j, 0.8, 1.3)
+    layer_posing.set_transforms(session, {BODY: move}, label="Turn layer")
+    settle(session)
+    before = placements(session)
+    session.project.history.do(shape_commands.set_anchor(BODY, 50 + 30j))
+    settle(session)
+    for one, other in zip(before, placements(session), strict=True):
+        np.testing.assert_allclose(one, other, rtol=0, atol=1e-9)
