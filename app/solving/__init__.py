@@ -27,11 +27,13 @@ from app.solving.pose_transfer import (
     PoseTransfer as PoseTransfer,
     SimilarityTransform as SimilarityTransform,
 )
+from app.solving.reload.alignment import PlacedPicture as PlacedPicture
 from app.solving.reload.apply import (
     Reloading as Reloading,
     start_reload as start_reload,
     step_reload as step_reload,
 )
+from app.solving.reload.margin import extend_under as extend_under
 from app.solving.reload.plan import (
     Change as Change,
     LayerChange as LayerChange,

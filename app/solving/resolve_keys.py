@@ -39,6 +39,7 @@ class KeyResolver:
     solves_all: bool = True  # also poses that already satisfy the limits
     new_layer: Layer | None = None  # with the new domain and undeformed poses, once built
     replaces_picture: bool = False  # whether `new_layer` has another picture
+    label: str = _("Replace picture")  # of that command
     rig: Rig | None = None  # None before the first key
     poses: tuple[Pose, ...] = ()  # solved, in the order of `Layer.poses`
     unsolved: tuple[str, ...] = ()  # names of poses that could not satisfy the limits and stay
@@ -73,9 +74,7 @@ class KeyResolver:
             return shape_commands.set_limits(identity, self.bounds, self.poses)
         if self.replaces_picture:
             posed = shape_commands.set_limits(identity, self.bounds, self.poses)
-            return _joined(
-                _("Replace picture"), layer_commands.replace_layer(identity, into), posed
-            )
+            return _joined(self.label, layer_commands.replace_layer(identity, into), posed)
         domain = shape_commands.replace_domain(identity, into.domain, into.meshing, self.poses)
         return _joined(domain.label, domain, layer_commands.keep_attachments(identity))
 

@@ -67,6 +67,7 @@ from app.storage.json_values import (
 from app.storage.pictures.layered import (
     ImportedLayer as ImportedLayer,
     LayeredPicture as LayeredPicture,
+    encode_png as encode_png,
 )
 from app.storage.pictures.mmap_pixels import (
     move_to_disk as move_to_disk,

@@ -9,8 +9,9 @@ from app.document import Document, DrawingFile, FileLayer, Layer, LayerOrigin
 from app.errors import LissomError
 from app.solving.reload.alignment import PlacedPicture
 from app.solving.reload.file_groups import FileGroups
+from app.solving.reload.margin import has_margin_of
 from app.solving.reload.matching import match_layers
-from app.solving.reload.pictures import compare_pictures, picture_digest
+from app.solving.reload.pictures import PictureChange, compare_pictures, picture_digest
 from app.solving.reload.replace_picture import find_new_corner
 from app.storage import ImportedLayer, LayeredPicture, Picture, run_parallel
 from app.texts import N_, _
@@ -19,6 +20,7 @@ UNKNOWN_FILE = N_(
     "{name} is none of this project's drawings: {known}. Give the changed file the name of its "
     "drawing."
 )
+UNCHANGED = PictureChange(is_redrawn=False, shift=0j)
 NO_MATCH = N_("none of the layers of {name} is in this project")
 
 
@@ -271,7 +273,10 @@ class _Comparison:
         imported, was = self.changed.layers[other], self.drawing.layers[index]
         corner = imported.corner + self.corner
         old = PlacedPicture(self.pictures[layer.id].rgba, layer.corner + self.scene_shift)
-        change = compare_pictures(old, PlacedPicture(imported.picture.rgba, corner))
+        new = PlacedPicture(imported.picture.rgba, corner)
+        # A margin that was added here is no change in the file.
+        is_extended = has_margin_of(old, new)
+        change = UNCHANGED if is_extended else compare_pictures(old, new)
         kinds = {
             (False, False): Change.SAME,
             (False, True): Change.MOVED,

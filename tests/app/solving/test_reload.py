@@ -22,6 +22,7 @@ from app.document.settings import Meshing
 from app.errors import LissomError
 from app.solving.reload.alignment import PlacedPicture, align_pictures
 from app.solving.reload.apply import start_reload, step_reload
+from app.solving.reload.margin import extend_under, has_margin_of
 from app.solving.reload.matching import match_layers
 from app.solving.reload.pictures import move_cut_out
 from app.solving.reload.plan import Change, find_drawing, plan_reload
@@ -385,3 +386,39 @@ def test_a_layer_without_its_drawing_has_no_file():
     layer = FileLayer(name="a")
     assert layer.path == ("", "a")
     assert LayerOrigin(drawing=1, index=0) != LayerOrigin(drawing=1, index=1)
+
+
+def halves():
+    """Two halves of a disc that meet at a whole pixel, with a soft edge around."""
+    y, x = np.mgrid[:60, :60]
+    disc = np.zeros((60, 60, 4), np.uint8)
+    disc[...] = (200, 60, 30, 0)
+    disc[..., 3] = np.clip(255 * (28 - np.hypot(x - 29.5, y - 29.5)), 0, 255)
+    return PlacedPicture(disc[:, :30], 10 + 5j), PlacedPicture(disc[:, 30:], 40 + 5j)
+
+
+def test_a_margin_lies_under_the_neighbour_only():
+    behind, front = halves()
+    grown = extend_under(behind, front)
+    assert grown.corner == 9 + 4j
+    assert grown.size == (32, 62)
+    # All of it is one column under the neighbour, in the colour beside it.
+    np.testing.assert_array_equal(grown.rgba[1:-1, 1:31], behind.rgba)
+    column = grown.rgba[:, 31]
+    assert (column[..., 3] > 0).sum() >= 55
+    assert (column[column[..., 3] > 0, :3] == (200, 60, 30)).all()
+    assert not grown.rgba[:, 0, 3].any()
+    assert extend_under(behind, PlacedPicture(front.rgba, 200 + 5j)) is None
+
+
+def test_a_margin_is_no_change_of_the_file():
+    behind, front = halves()
+    grown = extend_under(behind, front)
+    assert has_margin_of(grown, behind)
+    assert not has_margin_of(grown, PlacedPicture(behind.rgba, behind.corner + 1))
+    painted = behind.rgba.copy()
+    painted[20:24, 10:14, :3] = 0
+    assert not has_margin_of(grown, PlacedPicture(painted, behind.corner))
+    assert not has_margin_of(PlacedPicture(painted, behind.corner), behind)
+    # Without a margin a picture is itself.
+    assert has_margin_of(behind, behind)

@@ -6,9 +6,10 @@ import pytest
 from layered import blob, openraster
 from PIL import ImageDraw
 
-from app.document import handle_commands
+from app.document import Attachment, handle_commands, layer_commands
 from app.editor.actions import editing
 from app.editor.layering import reloading
+from app.editor.layering.seams import close_seam
 from app.editor.parts.dialogs import FileDialog, ReloadDialog
 from app.storage import save_project
 
@@ -127,3 +128,27 @@ def test_project_finds_its_drawing_beside_it_and_reloads_one_layer(window, proje
     window.act(reloading.begin_reload, dialog)
     window.settle()
     assert again.document is now
+
+
+def test_seam_between_a_layer_and_its_parent_is_closed_in_one_step(window, project):
+    body, arm = project.document.layers
+    window.act(close_seam, arm.id)
+    window.settle()
+    assert project.document.layers == (body, arm)  # it has no parent
+    joint = Attachment(parent=body.id, parent_point=110 + 120j)
+    window.act(editing.edit_document, layer_commands.attach_layer(arm.id, 110 + 120j, joint))
+    before = project.document
+    window.act(close_seam, arm.id)
+    window.settle()
+    wide, same = project.document.layers
+    assert same is before.layers[1]
+    assert wide.picture.size == tuple(side + 2 for side in body.picture.size)
+    assert wide.corner == body.corner - 1 - 1j
+    assert project.history.undo_label == "Close seam"
+    # The file has not changed by that.
+    window.act(reloading.reload_drawing)
+    window.settle()
+    assert window.session.dialogs.current is None
+    window.act(editing.undo)
+    window.settle()
+    assert project.document is before

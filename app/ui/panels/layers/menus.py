@@ -30,6 +30,7 @@ from app.editor.layering.layer_selection import select_layers, solo_layers
 from app.editor.layering.parenting import delete_layers
 from app.editor.layering.pictures import ask_replacement_picture, make_posable, make_still
 from app.editor.layering.reloading import reload_layers
+from app.editor.layering.seams import close_seam
 from app.editor.layering.switches import create_switch, key_switch
 from app.texts import _, ngettext
 from app.ui.shortcuts.keys import shown_keys
@@ -58,7 +59,7 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     is_many = len(chosen) > 1 and identity in chosen
     whom = chosen if is_many else (identity,)
     count = len(whom)
-    actions: list[Action] = [] if is_many else _of_one_layer(identity)
+    actions: list[Action] = [] if is_many else _of_one_layer(layer)
     imgui.separator()
     text = (
         ngettext("Show", "Show {count} layers", count)
@@ -107,13 +108,17 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     return actions
 
 
-def _of_one_layer(identity: int) -> list[Action]:
+def _of_one_layer(layer: Layer) -> list[Action]:
+    identity = layer.id
     entries = (
         (_("Duplicate"), icons.ICON_FA_CLONE, do(duplicate_layer, identity)),
         (_("Replace picture…"), icons.ICON_FA_FILE_IMAGE, do(ask_replacement_picture, identity)),
         (_("Reload layer"), icons.ICON_FA_ARROWS_ROTATE, do(reload_layers, identity)),
     )
-    return [action for title, icon, action in entries if menu_entry(title, icon)]
+    actions = [action for title, icon, action in entries if menu_entry(title, icon)]
+    if layer.has_parent and menu_entry(_("Close seam"), icons.ICON_FA_GRIP_LINES_VERTICAL):
+        actions.append(do(close_seam, identity))
+    return actions
 
 
 def _switch_disabled_reason(project: Project, members: Sequence[SwitchMember]) -> str | None:
