@@ -142,13 +142,16 @@ from app.document.layers.switch_group import SwitchGroup as SwitchGroup
 from app.document.model import Document as Document
 from app.document.playhead import Playhead as Playhead, loop_length as loop_length
 from app.document.queries.applied_motion import (
+    MotionEdits as MotionEdits,
     digest_motion as digest_motion,
+    find_motion_edits as find_motion_edits,
     is_motion_unedited as is_motion_unedited,
     keys_of_motion as keys_of_motion,
     motion_notices as motion_notices,
 )
 from app.document.queries.auto_pins import (
     PinnedSegment as PinnedSegment,
+    ground_velocity_at as ground_velocity_at,
     pinned_handles as pinned_handles,
     pinned_segments as pinned_segments,
 )
@@ -276,6 +279,7 @@ from app.document.queries.timeline import (
 )
 from app.document.rig.applied_motion import (
     AppliedMotion as AppliedMotion,
+    MadeKey as MadeKey,
     UnreadMotion as UnreadMotion,
     require_motions as require_motions,
 )

@@ -9,6 +9,11 @@ Imports: `engine`.
 from app.rigging.anatomy.handle_places import suggest_handles as suggest_handles
 from app.rigging.anatomy.joints import suggest_joints as suggest_joints
 from app.rigging.anatomy.kind_guess import guess_kind as guess_kind
+from app.rigging.anatomy.near_limbs import (
+    guess_near_limbs as guess_near_limbs,
+    name_near_limbs as name_near_limbs,
+    swap_limbs as swap_limbs,
+)
 from app.rigging.kinematics.chains import bend_side as bend_side, solve_chain as solve_chain
 from app.rigging.kinematics.recordings import fit_keys as fit_keys
 from app.rigging.kinematics.springs import (
@@ -21,6 +26,16 @@ from app.rigging.kinematics.springs import (
 from app.rigging.motions.body import Body as Body, other_side as other_side
 from app.rigging.motions.catalogue import find_motion as find_motion
 from app.rigging.motions.facing import guess_facing as guess_facing
-from app.rigging.motions.kinds import KINDS as KINDS, BodyKind as BodyKind, find_kind as find_kind
+from app.rigging.motions.kinds import (
+    KINDS as KINDS,
+    BodyKind as BodyKind,
+    find_kind as find_kind,
+    near_side as near_side,
+)
 from app.rigging.motions.library.table import MOTIONS as MOTIONS
-from app.rigging.motions.motion import Motion as Motion, Parameters as Parameters
+from app.rigging.motions.motion import (
+    Motion as Motion,
+    Parameters as Parameters,
+    Performance as Performance,
+)
+from app.rigging.motions.timing import Timing as Timing

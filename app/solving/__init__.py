@@ -9,6 +9,11 @@ from app.solving.drag.drag_solver import DragSolver as DragSolver
 from app.solving.drag.rig import Rig as Rig
 from app.solving.drag.shown_pose import fit_shown_pose as fit_shown_pose
 from app.solving.flipping import flip_poses as flip_poses, flip_targets as flip_targets
+from app.solving.motion_preset.body_rig import rig_body as rig_body
+from app.solving.motion_preset.joint_guess import (
+    JointGuess as JointGuess,
+    guess_joints as guess_joints,
+)
 from app.solving.motion_preset.joints_file import (
     JointsFile as JointsFile,
     find_joints as find_joints,
@@ -17,6 +22,7 @@ from app.solving.motion_preset.joints_file import (
 from app.solving.motion_preset.motion_request import (
     MotionRequest as MotionRequest,
     find_facing as find_facing,
+    find_rest_body as find_rest_body,
 )
 from app.solving.motion_preset.motion_solve import (
     MotionSolve as MotionSolve,

@@ -40,10 +40,10 @@ Places are pixels of the drawing from its lower left corner, x to the right and 
   anything
     none: it moves as a whole
 
-The project has a handle at each joint, and keys of the motion, which you can edit as any other
-keys. It loops, unless the motion travels. If the limits of distortion stop joints short of their
-targets, a notice lists them, with the largest --size at which none is stopped. The layers of a
-drawing are merged into one picture first.
+The project has a handle at each joint, bones along the limbs, and at most 8 keys in a cycle, which
+you can edit as any other keys. It loops, unless the motion travels. If the limits of distortion
+stop joints short of their targets, a notice lists them, with the largest --size at which none is
+stopped. The layers of a drawing are merged into one picture first.
 
 examples:
   lissom move --list
@@ -115,7 +115,32 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ),
     )
     parser.add_argument(
-        "--bones", action="store_true", help=_("add bones to each limb, which keep their length")
+        "--lean",
+        metavar="X",
+        type=float,
+        default=0.0,
+        help=_("degrees by which the trunk leans forwards, -30 to 30"),
+    )
+    parser.add_argument(
+        "--head-delay",
+        metavar="X",
+        type=float,
+        default=0.0,
+        help=_("share of the cycle by which the head is later, 0 to 0.5"),
+    )
+    parser.add_argument(
+        "--arm-delay",
+        metavar="X",
+        type=float,
+        default=0.0,
+        help=_("share of the cycle by which the arms are later, 0 to 0.5"),
+    )
+    parser.add_argument(
+        "--tail-delay",
+        metavar="X",
+        type=float,
+        default=0.0,
+        help=_("share of the cycle by which the tail is later, 0 to 0.5"),
     )
     add_meshing_options(parser)
     add_cut_out_options(parser)
@@ -142,7 +167,8 @@ def run(arguments: argparse.Namespace) -> int:
     parameters = Parameters(**{name: getattr(arguments, name) for name in names})
     given = _read_joints(arguments)
     opened = open_drawing(arguments, merges_layers=True)
-    found = find_joints(opened.document.layers[0], motion, given)
+    layer = opened.document.layers[0]
+    found = find_joints(layer, motion, given, opened.pictures[layer.id].rgba)
     if given.kind is None:
         print_line(_("kind: {kind} (guessed)").format(kind=found.kind))
     if found.joints and not given.joints:
@@ -153,7 +179,6 @@ def run(arguments: argparse.Namespace) -> int:
         joints=found.joints,
         parameters=parameters,
         facing={"left": -1, "right": 1, None: None}[arguments.facing],
-        bones=arguments.bones,
     )
     document = _solve(opened.document, request)
     save_drawing(arguments.out, opened, document)

@@ -1,6 +1,8 @@
 """Detection of edits to applied motion presets."""
 
 import hashlib
+from collections.abc import Mapping
+from typing import NamedTuple
 
 from app.document.channels.kinds import DEPTH
 from app.document.keyframe import Keyframe
@@ -8,6 +10,8 @@ from app.document.layer import Layer
 from app.document.model import Document
 from app.document.rig.applied_motion import AppliedMotion
 from app.texts import ngettext
+
+LEAST_EDIT = 0.1  # pixels; a target that moved by less is as the preset made it
 
 
 def keys_of_motion(layer: Layer, motion: AppliedMotion) -> tuple[Keyframe, ...]:
@@ -34,6 +38,50 @@ def digest_motion(layer: Layer, motion: AppliedMotion) -> str:
 def is_motion_unedited(layer: Layer, motion: AppliedMotion) -> bool:
     """Return whether the keys are as the motion preset made them."""
     return digest_motion(layer, motion) == motion.digest
+
+
+class MotionEdits(NamedTuple):
+    """What a person changed in the keys of a motion preset.
+
+    Attributes
+    ----------
+    shifts : mapping
+        Way of each moved handle in pixels, by the number of the key and the handle's id.
+    deleted : frozenset of int
+        Numbers of the keys that were deleted.
+    others : tuple of Keyframe
+        Keys that were inserted or moved in time.
+    kept : mapping
+        The keys of the preset by their numbers, for their easings and tangents.
+    """
+
+    shifts: Mapping[int, Mapping[int, complex]]
+    deleted: frozenset[int]
+    others: tuple[Keyframe, ...]
+    kept: Mapping[int, Keyframe]
+
+
+def find_motion_edits(layer: Layer, motion: AppliedMotion) -> MotionEdits:
+    """Return what was changed by hand in one repeat of a motion preset."""
+    period = (motion.last - motion.start) // motion.repeat_count
+    own = {
+        key.frame - motion.start: key
+        for key in layer.keys
+        if motion.start <= key.frame < motion.start + period
+    }
+    made = {key.offset: number for number, key in enumerate(motion.made)}
+    kept = {made[offset]: key for offset, key in own.items() if offset in made}
+    shifts = {}
+    for number, key in kept.items():
+        ways = {
+            handle: target.position - motion.made[number].targets[handle]
+            for handle, target in key.pose.targets.items()
+            if handle in motion.made[number].targets
+        }
+        shifts[number] = {handle: way for handle, way in ways.items() if abs(way) > LEAST_EDIT}
+    others = tuple(key for offset, key in own.items() if offset not in made)
+    gone = frozenset(range(len(motion.made))) - kept.keys() - {0}
+    return MotionEdits(shifts, gone, others if motion.made else (), kept)
 
 
 def motion_notices(document: Document) -> tuple[str, ...]:

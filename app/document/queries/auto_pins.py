@@ -14,6 +14,7 @@ from app.document.queries.key_segments import clip_segments
 from app.document.queries.material.boundary_stiffness import stiffness_source
 from app.document.queries.memo import memoized_on
 from app.document.queries.pose_tangents import adjacent_segments, pose_segments
+from app.document.rig.chains import find_chains
 from app.document.settings import FrameRange
 from engine.arrays import Booleans, Floats, freeze
 
@@ -24,6 +25,9 @@ class PinnedSegment(NamedTuple):
     """The pins of a segment."""
 
     is_pinned: Booleans  # (h,): handles pinned throughout the segment
+    # Velocity of the ground in pixels per frame to the right. Ends of limbs are pinned to the
+    # ground, other handles to the picture.
+    ground_velocity: float
     fading: Booleans  # (2, h): other handles, pinned in the segment before, and after
     neighbours: tuple[int | None, int | None]  # their numbers, if a pin fades to or from them
     content: tuple[object, ...]  # equal for equal pins, as long as the poses exist
@@ -59,16 +63,20 @@ def _pinned(
     pinned = np.zeros((len(clip_segments(clip)), len(layer.handles)), dtype=bool)
     if not layer.has_auto_pins or baseline is not None:
         return freeze(pinned)
+    ends = {chain.end for chain in find_chains(layer.bones)}
     for number, span in enumerate(clip_segments(clip)):
         one, other = keys[span.first], keys[span.last]
         # Full turns between equal targets are intended; a pin would undo them.
         if one.easing == HOLD or one.revolutions:
             continue
+        # Ends of limbs stand on the ground, which moves under a body that walks in place.
+        way = ground_velocity_at(clip, number) * span.frames
         for index, handle in enumerate(layer.handles):
             if handle.is_unpinned or handle.id in following:
                 continue
             first, second = (key.pose.targets[handle.id].position for key in (one, other))
-            pinned[number, index] = handle.locked or abs(first - second) < SAME_TARGET_DISTANCE
+            moved = second - first - (way if handle.id in ends else 0.0)
+            pinned[number, index] = handle.locked or abs(moved) < SAME_TARGET_DISTANCE
     return freeze(pinned)
 
 
@@ -101,6 +109,7 @@ def _segments(
         keys = [key for each in around for key in pose_segments(clip)[each].keys]
         content = (
             pinned[number].tobytes(),
+            ground_velocity_at(clip, number),
             fading.tobytes(),
             tuple(handle.position for handle in layer.handles),
             layer.has_parent,
@@ -113,7 +122,12 @@ def _segments(
         poses = tuple(dict.fromkeys(key.pose for key in keys))
         found.append(
             PinnedSegment(
-                freeze(pinned[number].copy()), freeze(fading), (before, after), content, poses
+                is_pinned=freeze(pinned[number].copy()),
+                ground_velocity=ground_velocity_at(clip, number),
+                fading=freeze(fading),
+                neighbours=(before, after),
+                content=content,
+                poses=poses,
             )
         )
     return tuple(found)
@@ -127,6 +141,19 @@ def _fixed_angles(layer: Layer, keys: Sequence[Keyframe]) -> tuple[frozenset[int
         frozenset(i for i, target in key.pose.targets.items() if target.rotation is not None)
         for key in keys
     )
+
+
+def ground_velocity_at(clip: Clip, number: int) -> float:
+    """Return the velocity of the ground in a segment, in pixels per frame to the right.
+
+    It differs from 0 between two keys of a motion preset that walks in place.
+    """
+    span, keys = clip_segments(clip)[number], clip.keys
+    one, other = keys[span.first], keys[span.last]
+    if one.motion is None or one.motion != other.motion:
+        return 0.0
+    motions = (each for each in clip.layer.motions if each.id == one.motion)
+    return next((each.ground_velocity for each in motions), 0.0)
 
 
 def _velocity_sources(clip: Clip, number: int) -> tuple[object, ...]:

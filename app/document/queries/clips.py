@@ -15,7 +15,8 @@ from app.document.queries.layers.layer_bones import limb_ends
 from app.document.queries.memo import memoized_on
 from app.document.settings import FrameRange
 
-# Fields of a layer, and of its handles, that do not affect its motion. All other fields do.
+# Fields of a layer, and of its handles, that do not affect its motion. All other fields do. Of
+# motion presets only the ground does.
 UNMOVING = {
     *("name", "next_handle", "library", "mirror", "motions", "unread_motions", "reference"),
     *("locked", "hidden", "opacity", "blend", "clipped", "group", "unread_channels", "unknown"),
@@ -40,7 +41,9 @@ def motion_source(layer: Layer) -> tuple[object, ...]:
     moving = tuple(each for each in layer.channels.items() if LAYER_KINDS[each[0][0]].moves_layer)
     used = {each.pose for slider in layer.sliders for each in slider.poses}
     poses = tuple(kept.pose for kept in layer.library if kept.name in used)
-    return (*_of_layer(layer), tuple(map(_of_handle, layer.handles)), stiffness, moving, poses)
+    grounds = tuple((motion.id, motion.ground_velocity) for motion in layer.motions)
+    handles = tuple(map(_of_handle, layer.handles))
+    return (*_of_layer(layer), handles, stiffness, moving, poses, grounds)
 
 
 @dataclass(frozen=True, slots=True)

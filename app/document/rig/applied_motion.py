@@ -13,6 +13,17 @@ MAX_REPEATS = 1000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MadeKey:
+    """A key as a motion preset made it, by which edits are known."""
+
+    offset: int  # frames from the motion's start
+    targets: Mapping[int, complex]  # by handle id
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "targets", MappingProxyType(dict(self.targets)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AppliedMotion:
     """An applied motion preset, with all that is needed to apply it again with other parameters.
 
@@ -30,7 +41,10 @@ class AppliedMotion:
     start: int  # first frame of the motion; the layer blends in from `first` to `start`
     last: int  # last frame
     repeat_count: int = 1  # number of repeats
+    # Pixels by which the ground passes to the left in a cycle, under a body that walks in place.
+    stride: float = 0.0
     digest: str = ""  # of the keys that the preset made
+    made: tuple[MadeKey, ...] = ()  # the keys of one repeat; empty in earlier projects
 
     # Fields of a later version.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
@@ -64,10 +78,23 @@ class AppliedMotion:
         )
         object.__setattr__(self, "joints", MappingProxyType(dict(self.joints)))
 
+    @property
+    def ground_velocity(self) -> float:
+        """Pixels per frame by which standing feet move to the right."""
+        return -self.stride * self.repeat_count / (self.last - self.start)
+
     def moved(self, to: Callable[[int], int]) -> Self:
         """Return the motion with its frames mapped by a function."""
         first, start, last = map(to, (self.first, self.start, self.last))
         return replace(self, first=first, start=start, last=last)
+
+    def shifted(self, by: complex) -> Self:
+        """Return the motion with its places moved on the canvas."""
+        made = tuple(
+            replace(key, targets={handle: at + by for handle, at in key.targets.items()})
+            for key in self.made
+        )
+        return replace(self, made=made)
 
     def overlaps(self, first: int, last: int) -> bool:
         """Return whether the ranges of frames overlap in more than an end."""

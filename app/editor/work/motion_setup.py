@@ -24,12 +24,13 @@ class MotionSetup:
     motion: str
     joints: JointPlaces
     suggested: JointPlaces  # joints that were found for the body kind
+    # Ends of near limbs that are a guess: the other limb of the pair may be the near one.
+    unsure: tuple[str, ...] = ()
     # The last joints of other body kinds.
     others: Mapping[str, JointPlaces] = field(default_factory=dict)
     parameters: Parameters = field(default_factory=Parameters)
     rounds: int = 1
     facing: int | None = None  # None uses the direction that the drawing seems to face
-    bones: bool = False
     first: int = 0  # the frame at which the motion begins
     applied_motion: AppliedMotion | None = None  # the motion that it replaces
     replaces_edits: bool = False  # whether keys edited by hand are replaced as well
@@ -57,6 +58,10 @@ class MotionSetup:
         ordered = {name: joints[name] for name in self.body_kind.parents if name in joints}
         past = (*self.past, self.joints)[-MOST_UNDONE:]
         return replace(self, joints=ordered, past=past, selected_joint=chosen)
+
+    def with_answer(self, end: str) -> Self:
+        """Return the draft with a near limb that is no longer a guess."""
+        return replace(self, unsure=tuple(each for each in self.unsure if each != end))
 
     def without(self, name: str) -> Self:
         return self.with_joints({each: at for each, at in self.joints.items() if each != name})

@@ -17,6 +17,7 @@ CROWN = 0.65  # radii above the middle of a head, off the face
 BELOW_TOP = 0.08
 # Distance of a limb's root from the node it leaves, in radii of the node.
 ROOT = 0.8
+THICK_TRUNK = 0.85  # of a lying trunk: thickness at its hips and its chest
 # The chest is the last place where the trunk has this part of the hips' thickness, at most at this
 # share of it.
 THICK_HEAD = 0.5  # of a lying trunk: thickness of the head over the chest's
@@ -100,6 +101,10 @@ def _limb(plan: BodyPlan, start: int, end: int, tip: int) -> tuple[complex, comp
 
 
 def _leg(plan: BodyPlan, start: int, leg: PlannedLeg) -> tuple[complex, complex, complex]:
+    """Return the root, the joint and the tip of a leg.
+
+    The leg turns where it leaves the fork, so that the legs of one drawing can pass each other.
+    """
     return _limb(plan, start, int(leg.path[-1]), leg.ankle)
 
 
@@ -140,14 +145,14 @@ def _standing(plan: BodyPlan, *, is_frontal: bool) -> dict[str, complex]:
     way = _JointPath(plan, plan.between(hips, end) if end is not None else np.array([hips]))
     found, top = _head(plan, way, is_frontal=is_frontal)
     legs = plan.legs if len(plan.legs) < 2 else [plan.legs[0], plan.legs[-1]]
+    found["hips"] = _hips(plan, hips, legs)
     limbs = [(hips, _leg(plan, hips, leg)) for leg in legs]
     found |= _sides(plan, limbs, ("hip", "knee", "foot"), is_frontal=is_frontal)
     arms, tail = _arms_and_tail(plan, way, top, is_frontal=is_frontal)
-    arms += [(hips, _leg(plan, hips, leg)) for leg in plan.legs[1:-1]]
+    arms += [(hips, _limb(plan, hips, int(leg.path[-1]), leg.ankle)) for leg in plan.legs[1:-1]]
     found |= _sides(plan, arms, ("shoulder", "elbow", "hand"), is_frontal=is_frontal)
     if tail is not None:
         found["tail"] = tail
-    found["hips"] = _hips(plan, hips, legs)
     roots = [limb[0] for _, limb in arms]
     found["chest"] = _chest(way, top, found["hips"], roots)
     return _with_neck_apart(found)
@@ -173,18 +178,15 @@ def _sides(
     if is_frontal:
         for start, limb in sorted(limbs, key=reach):
             by_side["L" if limb[2].real >= plan.places[start].real else "R"] = limb
-        used = names
     else:
         longest = sorted(limbs, key=reach)[-2:]
         ahead = sorted(longest, key=lambda limb: -plan.facing * limb[1][2].real)
         order = "LR" if names[0] == "hip" else "RL"
         by_side = {side: limb for side, (_, limb) in zip(order, ahead, strict=False)}
-        used = ("", *names[1:])
     return {
         f"{name}.{side}": place
         for side, limb in by_side.items()
-        for name, place in zip(used, limb, strict=True)
-        if name
+        for name, place in zip(names, limb, strict=True)
     }
 
 
@@ -253,13 +255,12 @@ def _with_neck_apart(found: dict[str, complex]) -> dict[str, complex]:
     return {name: place for name, place in found.items() if name != "neck"}
 
 
-def _thickest(plan: BodyPlan, fork: int, ends: list[int]) -> complex:
-    """Return the thickest place around a fork, on the paths to its ends."""
-    nodes = np.unique(
-        np.concatenate([plan.between(fork, end) for end in ends] + [np.array([fork])])
-    )
-    near = nodes[np.abs(plan.places[nodes] - plan.places[fork]) <= plan.radii[fork]]
-    return complex(plan.places[near[plan.radii[near].argmax()]])
+def _in_trunk(plan: BodyPlan, fork: int) -> complex:
+    """Return the place in a lying trunk above the fork of two legs, where the trunk is thick."""
+    trunk = plan.trunk if int(plan.trunk[0]) == fork else plan.trunk[::-1]
+    half = trunk[: max(len(trunk) // 2, 1)]
+    thick = plan.radii[half] >= THICK_TRUNK * plan.radii[trunk].max()
+    return complex(plan.places[half[int(thick.argmax())] if thick.any() else half[-1]])
 
 
 def _lying(plan: BodyPlan) -> dict[str, complex]:
@@ -269,18 +270,18 @@ def _lying(plan: BodyPlan) -> dict[str, complex]:
     found: dict[str, complex] = {}
     hind, front = (0, -1) if plan.facing > 0 else (-1, 0)
     hips, chest = int(plan.trunk[hind]), int(plan.trunk[front])
-    for start, pair, names in (
-        (hips, plan.pairs[hind], ("knee", "foot")),
-        (chest, plan.pairs[front], ("elbow", "hand")),
+    for trunk_joint, start, pair, names in (
+        ("hips", hips, plan.pairs[hind], ("hip", "knee", "foot")),
+        ("chest", chest, plan.pairs[front], ("shoulder", "elbow", "hand")),
     ):
+        found[trunk_joint] = _in_trunk(plan, start)
         # The outer legs are usually those on the near side.
         outer = pair if (start == hips) == (plan.facing > 0) else pair[::-1]
         for side, leg in zip("LR", (outer[0], outer[-1])[: len(outer)], strict=False):
             limb = _leg(plan, start, leg)
-            found |= {f"{names[0]}.{side}": limb[1], f"{names[1]}.{side}": limb[2]}
+            found |= {f"{name}.{side}": place for name, place in zip(names, limb, strict=True)}
     ahead = [end for end in plan.others if plan.ahead(end)]
     behind = [end for end in plan.others if not plan.ahead(end)]
-    found["hips"], found["chest"] = _thickest(plan, hips, behind), _thickest(plan, chest, ahead)
     if ahead:
         tip = max(ahead, key=lambda end: plan.facing * plan.places[end].real)
         found |= _head(plan, _JointPath(plan, plan.between(chest, tip)), is_frontal=False)[0]

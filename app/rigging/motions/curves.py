@@ -8,6 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
+EIGHTHS = tuple(number / 8 for number in range(8))  # phases of key poses
 Periodic = Callable[[float], float]  # of the phase, with period 1
 
 

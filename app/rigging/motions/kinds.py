@@ -52,7 +52,7 @@ class BodyKind:
     """The joints that a body may have; joints that no motion needs may be missing.
 
     The front legs of four-legged bodies use the names of a biped's arm: shoulder, elbow, hand. Seen
-    from the side `.L` and `.R` are the two legs of a pair, whichever is nearer.
+    from the side, the near side is the right one of a body that faces right, else the left one.
     """
 
     name: str
@@ -60,6 +60,7 @@ class BodyKind:
     hint: str
     parents: Mapping[str, str]  # of each joint in order; "" for the root
     usual: tuple[str, ...]  # joints that are suggested if they are found
+    is_side_view: bool = False  # whether a side is near and the other far
 
     def parent(self, joint: str, present: Collection[str]) -> str:
         """Return the nearest ancestor of a joint that is present; "" if there is none."""
@@ -84,9 +85,13 @@ class BodyKind:
                 )
 
 
-_LOWER_ARMS = ("elbow.L", "hand.L", "elbow.R", "hand.R")
-_LOWER_LEGS = ("knee.L", "foot.L", "knee.R", "foot.R")
 _ALWAYS = ("hips", "chest", "head", *_ARMS, *_LEGS)
+
+
+def near_side(facing: int) -> str:
+    """Return the near side of a body seen from the side: "L" or "R"."""
+    return "R" if facing > 0 else "L"
+
 
 BIPED_FRONT = BodyKind(
     name="biped-front",
@@ -100,14 +105,16 @@ BIPED_SIDE = BodyKind(
     label=_("Two legs, from the side"),
     hint=_("A person, a bird, a kangaroo"),
     parents=_BODY,
-    usual=("hips", "chest", "head", *_LOWER_ARMS, *_LOWER_LEGS),
+    usual=_ALWAYS,
+    is_side_view=True,
 )
 FOUR_LEGS = BodyKind(
     name="four-legs",
     label=_("Four legs, from the side"),
     hint=_("A horse, a dog, a lizard"),
     parents=_BODY,
-    usual=("hips", "chest", "head", "tail", *_LOWER_ARMS, *_LOWER_LEGS),
+    usual=(*_ALWAYS, "tail"),
+    is_side_view=True,
 )
 CHAIN = BodyKind(
     name="chain",

@@ -12,9 +12,11 @@ from app.rigging.motions.curves import STEADY, Periodic, covering_curve
 from app.rigging.motions.motion import JointPose, MotionInstance, MotionTemplate, Parameters
 from app.rigging.motions.stepping import FootSteps
 from app.rigging.motions.steps import Gait, required_drop, solve_leg_ik
+from app.rigging.motions.timing import EVEN, Timing
 
 FEET = (("foot.L", 0.0), ("foot.R", 0.0))
 STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, landings=FEET, gathered=0.0, straight=0.998)
+LEVEL_HEAD = 0.7  # of the trunk's lean, by which the head turns back
 SAMPLES = 96  # of a cycle, at which the lowest position of the hips is searched
 
 
@@ -45,17 +47,21 @@ class LimbMotion(MotionTemplate):
         """Whether its steps move the body forward."""
         return self.gait is not None and self.gait.stride > 0
 
-    def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
-        return _LimbInstance(self, body, parameters)
+    def instantiate(
+        self, body: Body, parameters: Parameters, timing: Timing = EVEN
+    ) -> MotionInstance:
+        return _LimbInstance(self, body, parameters, timing)
 
 
 class _LimbInstance(MotionInstance):
     """Rotating joints and stepping feet of one body."""
 
-    def __init__(self, template: LimbMotion, body: Body, parameters: Parameters) -> None:
+    def __init__(
+        self, template: LimbMotion, body: Body, parameters: Parameters, timing: Timing
+    ) -> None:
         self.template, self.body, self.parameters = template, body, parameters
         gait = template.gait or STANDING
-        self.steps = FootSteps(body, gait, parameters)
+        self.steps = FootSteps(body, gait, parameters, timing)
         self.hips = next(iter(body.joints))
         # A motion of one side is done by the other side if the first side is missing.
         self.is_first_side = not template.either or template.either[0] in body.joints
@@ -86,7 +92,8 @@ class _LimbInstance(MotionInstance):
             down = gait.rolled(foot, phase) * self.parameters.size
             turns[foot] = -self.body.facing * math.radians(down)
             standing |= {foot} if gait.stands(foot, phase) else set()
-        return JointPose(places, turns, frozenset(standing))
+        sides = {leg.joints[1]: leg.bend for leg in self.steps.legs.values() if leg.joints[2:]}
+        return JointPose(places, turns, frozenset(standing), sides)
 
     def _room(self, phase: float) -> float:
         """Return how much the hips are too high at a moment."""
@@ -133,9 +140,29 @@ class _LimbInstance(MotionInstance):
         if alone in template.single:
             curve, late = template.single[alone], 0.0
         if curve is None:
-            return 0.0
+            return self._lean(kept)
+        late += self._delay(kept)
         way = self.body.facing
         if has_side and self.body.kind.name == "biped-front":
             way = 1 if self.body.joints[name].real >= self.body.joints[self.hips].real else -1
         amount = self.parameters.size * (1.0 if has_side else self.parameters.energy)
-        return way * amount * math.radians(curve(phase - late))
+        return way * amount * math.radians(curve(phase - late)) + self._lean(kept)
+
+    def _delay(self, joint: str) -> float:
+        """Return the share of the cycle by which a part of the body is later than usual."""
+        of = self.parameters
+        delays = {
+            "neck": of.head_delay,
+            "head": of.head_delay,
+            "elbow": of.arm_delay,
+            "hand": of.arm_delay,
+            "tail": of.tail_delay,
+        }
+        return delays.get(joint, 0.0)
+
+    def _lean(self, joint: str) -> float:
+        """Return how far a joint turns as the trunk leans forwards; the head stays upright."""
+        upright = 1.0 if joint == "chest" else -LEVEL_HEAD if joint == "head" else 0.0
+        is_frontal = self.body.kind.name == "biped-front"
+        lean = 0.0 if is_frontal else math.radians(self.parameters.lean)
+        return -self.body.facing * upright * lean

@@ -1,11 +1,13 @@
 """Motions over a cycle, independent of the body."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import NamedTuple
 
 from app.rigging.motions.body import Body, other_side
+from app.rigging.motions.timing import EVEN, Timing
 from engine.arrays import as_number
 from engine.errors import EngineError
 
@@ -14,6 +16,10 @@ RANGES: Mapping[str, tuple[float, float]] = {
     "speed": (0.1, 4.0),
     "size": (0.05, 2.0),
     "energy": (0.0, 2.0),
+    "lean": (-30.0, 30.0),
+    "head_delay": (0.0, 0.5),
+    "arm_delay": (0.0, 0.5),
+    "tail_delay": (0.0, 0.5),
 }
 LEAST_FRAMES = 12
 
@@ -34,6 +40,11 @@ class Parameters:
     mirrored: bool = False  # swaps the sides: the other arm waves, a walk goes the other way
     start: float = 0.0  # phase at which the motion begins
     travel: bool = False  # whether the body moves across the picture instead of staying in place
+    lean: float = 0.0  # degrees by which the trunk leans forwards
+    # Shares of the cycle by which parts of the body are later than usual.
+    head_delay: float = 0.0
+    arm_delay: float = 0.0
+    tail_delay: float = 0.0
 
     def __post_init__(self) -> None:
         for name, (least, most) in RANGES.items():
@@ -59,6 +70,7 @@ class JointPose(NamedTuple):
     places: Mapping[str, complex]
     turns: Mapping[str, float]  # in radians, counter-clockwise; other joints rotate freely
     standing: frozenset[str]
+    sides: Mapping[str, int] = MappingProxyType({})  # to which side bones bend at their joints
 
 
 class MotionInstance(ABC):
@@ -86,7 +98,9 @@ class MotionTemplate(ABC):
         return False
 
     @abstractmethod
-    def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
+    def instantiate(
+        self, body: Body, parameters: Parameters, timing: Timing = EVEN
+    ) -> MotionInstance:
         pass
 
 
@@ -102,7 +116,7 @@ class Motion:
     label: str
     hint: str
     seconds: float  # of a cycle at the usual speed
-    keys: int  # poses with which a cycle is keyed
+    phases: tuple[float, ...]  # of the poses with which a cycle is keyed, ascending from 0
     templates: Mapping[str, MotionTemplate] = field(repr=False)
 
     @property
@@ -130,21 +144,21 @@ class Motion:
         fps = as_number(fps, "The speed of a motion", above=0)
         return max(LEAST_FRAMES, round(self.seconds * fps / parameters.speed))
 
-    def poses_at(
-        self, body: Body, parameters: Parameters, shares: Sequence[float]
-    ) -> tuple[JointPose, ...]:
-        """Return the joint positions after shares of the cycle, from its start.
+    def key_times(self, parameters: Parameters, frames: int) -> tuple[tuple[int, float], ...]:
+        """Return the frames of the keys of a cycle and their phases, from the start phase on."""
+        first = max((phase for phase in self.phases if phase <= parameters.start), default=0.0)
+        later = sorted(((phase - first) % 1.0, phase) for phase in self.phases)
+        return tuple((round(passed * frames), phase) for passed, phase in later)
 
-        With `travel` the positions move on by this share of a stride, also beyond 1.
+    def perform(self, body: Body, parameters: Parameters, timing: Timing = EVEN) -> "Performance":
+        """Return the motion of a body.
 
         Raises
         ------
         EngineError
-            If the motion does not fit the kind, a required joint is missing, there are no steps to
-            travel by, or a share is not finite.
+            If the motion does not fit the kind, a required joint is missing, or there are no steps
+            to travel by.
         """
-        for share in shares:
-            as_number(share, "The start of a motion's cycle")
         template = self.template_for(body.kind.name)
         if parameters.travel and not template.can_travel:
             raise EngineError(
@@ -154,12 +168,32 @@ class Motion:
         body.require_joints(template.needed, f"{self.name!r}")
         if template.either and not any(name in body.joints for name in template.either):
             body.require_joints(template.either[:1], f"{self.name!r}")
-        performed = template.instantiate(body, parameters)
-        ways = [share * performed.stride if parameters.travel else 0.0 for share in shares]
-        moments = [performed.pose_at((share + parameters.start) % 1.0) for share in shares]
-        if parameters.mirrored:
-            moments = [_swapped(moment) for moment in moments]
-        return tuple(_moved(moment, way) for moment, way in zip(moments, ways, strict=True))
+        return Performance(template.instantiate(body, parameters, timing), parameters)
+
+
+@dataclass(frozen=True, slots=True)
+class Performance:
+    """A motion of one body with its parameters."""
+
+    instance: MotionInstance
+    parameters: Parameters
+
+    @property
+    def stride(self) -> float:
+        """Distance that the ground passes to the left in a cycle in place, in pixels."""
+        return 0.0 if self.parameters.travel else self.instance.stride
+
+    def pose_at(self, phase: float, cycles: float = 0.0) -> JointPose:
+        """Return the joint positions at a phase, after a number of cycles.
+
+        A body that travels moves on by a stride in a cycle.
+        """
+        moment = self.instance.pose_at(as_number(phase, "The phase of a motion") % 1.0)
+        if self.parameters.mirrored:
+            moment = _swapped(moment)
+        if not self.parameters.travel:
+            return moment
+        return _moved(moment, cycles * self.instance.stride)
 
 
 def _moved(moment: JointPose, way: float) -> JointPose:
@@ -169,4 +203,5 @@ def _moved(moment: JointPose, way: float) -> JointPose:
 def _swapped(moment: JointPose) -> JointPose:
     places = {other_side(name): place for name, place in moment.places.items()}
     turns = {other_side(name): turn for name, turn in moment.turns.items()}
-    return JointPose(places, turns, frozenset(map(other_side, moment.standing)))
+    sides = {other_side(name): side for name, side in moment.sides.items()}
+    return JointPose(places, turns, frozenset(map(other_side, moment.standing)), sides)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from app.rigging.motions.body import Body
 from app.rigging.motions.curves import STEADY, Periodic
 from app.rigging.motions.motion import JointPose, MotionInstance, MotionTemplate, Parameters
+from app.rigging.motions.timing import EVEN, Timing
 
 # Points below this share of the height stay in place, and do not spread.
 FOOT = 0.12
@@ -24,7 +25,9 @@ class SquashStretch(MotionTemplate):
     rise: Periodic = STEADY
     lean: Periodic = STEADY  # of the top, to the right, in degrees
 
-    def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
+    def instantiate(
+        self, body: Body, parameters: Parameters, _timing: Timing = EVEN
+    ) -> MotionInstance:
         return _SquashStretchInstance(self, body, parameters)
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from app.rigging.motions.body import Body, without_side
 from app.rigging.motions.curves import bump, hermite
+from app.rigging.motions.timing import SAME_PHASE, Timing
 
 # A leg drawn with at least this bend keeps its side; a straighter leg bends as usual for its kind.
 BENT = 0.21  # radians
@@ -28,20 +29,8 @@ class Gait:
     is_treadmill: bool = True  # whether, in place, feet slide back on the ground as on a treadmill
     roll: float = 0.0  # degrees by which a foot points down when it leaves the ground
 
-    def phase(self, foot: str, phase: float) -> float:
-        """Return the phase of a foot's own cycle, which begins when the foot comes down."""
-        return (phase - dict(self.landings)[foot]) % 1.0
-
     def stands(self, foot: str, phase: float) -> bool:
-        return self.phase(foot, phase) <= self.stance
-
-    def ahead(self, foot: str, phase: float) -> float:
-        """Return how far a foot is ahead of the middle of its stance, in strides."""
-        own, half = self.phase(foot, phase), self.stance / 2
-        if own <= self.stance:
-            return half - own
-        swing = 1 - self.stance
-        return hermite((own - self.stance) / swing, -half, half, -swing)
+        return self._swung(foot, phase) == 0.0
 
     def lifted(self, foot: str, phase: float) -> float:
         """Return the height of a foot as a share of its greatest height."""
@@ -54,8 +43,21 @@ class Gait:
 
     def _swung(self, foot: str, phase: float) -> float:
         """Return the finished share of a foot's swing, 0 while the foot stands."""
-        own = self.phase(foot, phase)
-        return 0.0 if own <= self.stance else (own - self.stance) / (1 - self.stance)
+        own = (phase - dict(self.landings)[foot]) % 1.0
+        is_standing = own <= self.stance + SAME_PHASE or own >= 1 - SAME_PHASE
+        return 0.0 if is_standing else (own - self.stance) / (1 - self.stance)
+
+    def ahead(self, foot: str, phase: float, timing: Timing) -> float:
+        """Return how far a foot is ahead of the middle of its stance, in strides."""
+        landing = dict(self.landings)[foot]
+        own = timing.between(landing, phase)
+        stance = 1.0 if self.stance >= 1 else timing.between(landing, landing + self.stance)
+        # The middle of the stance does not depend on the frames of the keys.
+        start = self.stance / 2 + (stance - self.stance) / 2
+        swung = self._swung(foot, phase)
+        if swung == 0.0:
+            return start - (own if own <= stance + SAME_PHASE else own - 1)
+        return hermite(swung, start - stance, start, stance - 1)
 
 
 class BodyLeg(NamedTuple):

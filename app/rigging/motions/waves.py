@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from app.rigging.motions.body import Body
 from app.rigging.motions.motion import JointPose, MotionInstance, MotionTemplate, Parameters
+from app.rigging.motions.timing import EVEN, Timing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,7 +20,9 @@ class Wave(MotionTemplate):
     held: bool = False  # whether the first joint stays in place; else the mean of all joints
     needed: tuple[str, ...] = ("joint.1", "joint.2", "joint.3")
 
-    def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
+    def instantiate(
+        self, body: Body, parameters: Parameters, _timing: Timing = EVEN
+    ) -> MotionInstance:
         return _WaveInstance(self, body, parameters)
 
 

@@ -7,9 +7,11 @@ from typing import NamedTuple
 
 from app.document import Layer
 from app.errors import LissomError
-from app.rigging import Motion, find_kind, guess_kind, suggest_joints
+from app.rigging import Motion, find_kind, guess_kind
+from app.solving.motion_preset.joint_guess import guess_joints
 from app.storage import as_object, as_point, as_text, load_json, repr_for_error
 from app.texts import _
+from engine.arrays import Bytes
 
 SCHEMA = 1
 LARGEST = 1024 * 1024  # bytes
@@ -28,8 +30,10 @@ class LayerJoints(NamedTuple):
     joints: Mapping[str, complex]  # empty if the drawing moves as a whole
 
 
-def find_joints(layer: Layer, motion: Motion, given: JointsFile) -> LayerJoints:
-    """Return the kind and the joints of a drawing, guessed if not given."""
+def find_joints(
+    layer: Layer, motion: Motion, given: JointsFile, rgba: Bytes | None = None
+) -> LayerJoints:
+    """Return the kind and the joints of a drawing, guessed from its picture if not given."""
     loops, kind = layer.domain.loops, given.kind
     if kind is None:
         if given.joints:
@@ -44,7 +48,7 @@ def find_joints(layer: Layer, motion: Motion, given: JointsFile) -> LayerJoints:
             kind = WHOLE
     joints = given.joints
     if not joints and find_kind(kind).parents:
-        joints = suggest_joints(loops, find_kind(kind))
+        joints = guess_joints(layer, kind, rgba).joints
         if not joints:
             raise LissomError(
                 _("Lissom found no joints for {kind!r} in the drawing; give --joints").format(

@@ -1,10 +1,10 @@
 """Key poses of a motion preset as targets of handles."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
-from app.document import AppliedMotion, Layer, Spring, Target
-from app.rigging import Body
+from app.document import AppliedMotion, Layer, Pose, Spring, Target
+from app.rigging import Body, Performance, Timing
 from app.solving.motion_preset.motion_request import MotionRequest
 from engine.maps import Bounds
 
@@ -20,6 +20,26 @@ class JointKeyPose:
 
     frame: int
     targets: Mapping[int, Target]
+    # Ways in pixels by which handles were moved by hand, from where the preset leads them.
+    shifts: Mapping[int, complex] = field(default_factory=dict)
+
+    def shifted(self, pose: Pose) -> Mapping[int, Target]:
+        """Return the targets of a pose of the preset with what was moved by hand."""
+        return {
+            identity: replace(target, position=target.position + self.shifts[identity], side=None)
+            if identity in self.shifts
+            else target
+            for identity, target in pose.targets.items()
+        }
+
+
+def plan_performance(order: MotionRequest, body: Body, frames: int) -> Performance:
+    """Return the motion of a body whose cycle takes a number of frames."""
+    motion, parameters = order.preset, order.parameters
+    times = motion.key_times(parameters, frames)
+    zero = next(offset for offset, phase in times if phase == 0.0)
+    shares = sorted((phase, (offset - zero) % frames / frames) for offset, phase in times)
+    return motion.perform(body, parameters, Timing((*shares, (1.0, 1.0))))
 
 
 def find_key_poses(
@@ -31,25 +51,29 @@ def find_key_poses(
     """
     motion, parameters = order.preset, order.parameters
     period = (given.last - given.start) // given.repeat_count
-    # Motions with steps have a key at every frame: feet would slide in in-betweens.
-    steps = motion.template_for(order.kind).can_travel
-    count = period if steps else min(period, motion.keys)
-    offsets = [round(number * period / count) for number in range(count)]
+    performed = plan_performance(order, body, period)
+    times = list(motion.key_times(parameters, period))
     if parameters.travel:
-        offsets = [
-            turn * period + offset for turn in range(given.repeat_count) for offset in offsets
-        ] + [given.repeat_count * period]
-    postures = motion.poses_at(body, parameters, [offset / period for offset in offsets])
+        turns = range(given.repeat_count)
+        times = [(turn * period + offset, phase) for turn in turns for offset, phase in times]
+        times.append((given.repeat_count * period, times[0][1]))
+    postures = [performed.pose_at(phase, offset / period) for offset, phase in times]
+    edited = {} if order.edits is None else order.edits.shifts
     standing = frozenset(given.joints[name] for each in postures for name in each.standing)
     return tuple(
         JointKeyPose(
             frame=given.start + offset,
             targets={
-                identity: Target(position=posture.places[name], rotation=posture.turns.get(name))
+                identity: Target(
+                    position=posture.places[name],
+                    rotation=posture.turns.get(name),
+                    side=posture.sides.get(name),
+                )
                 for name, identity in given.joints.items()
             },
+            shifts=edited.get(number % len(motion.phases), {}),
         )
-        for offset, posture in zip(offsets, postures, strict=True)
+        for number, ((offset, _), posture) in enumerate(zip(times, postures, strict=True))
     ), standing
 
 

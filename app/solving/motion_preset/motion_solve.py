@@ -9,6 +9,7 @@ from app.document import (
     Document,
     Keyframe,
     Layer,
+    MadeKey,
     Pose,
     clip_of,
     is_motion_unedited,
@@ -21,13 +22,14 @@ from app.rigging import Body
 from app.solving.drag.drag_solver import DragSolver
 from app.solving.drag.rig import Rig
 from app.solving.drag.shown_pose import fit_shown_pose
-from app.solving.motion_preset.key_poses import JointKeyPose, find_key_poses, with_joint_weights
-from app.solving.motion_preset.motion_request import (
-    MotionRequest,
-    find_rest_body,
-    with_handles_at_joints,
-    with_limits,
+from app.solving.motion_preset.body_rig import rig_body
+from app.solving.motion_preset.key_poses import (
+    JointKeyPose,
+    find_key_poses,
+    plan_performance,
+    with_joint_weights,
 )
+from app.solving.motion_preset.motion_request import MotionRequest, find_rest_body
 from app.solving.motion_preset.splicing import count_blend_frames, splice_motion
 from app.texts import _
 
@@ -51,7 +53,8 @@ class MotionSolve:
     blend_pose: Pose | None  # the pose from which the motion blends in
     key_poses: tuple[JointKeyPose, ...]  # to solve, without a last key that equals the first
     rig: Rig  # of the joints only; other handles follow the body
-    poses: tuple[Pose, ...] = ()  # the solved poses
+    poses: tuple[Pose, ...] = ()  # the solved poses, as the preset makes them
+    edited_poses: tuple[Pose, ...] = ()  # the same with what was changed by hand
     # Largest target error of each joint by name, in pixels, with its frame.
     target_errors: Mapping[str, tuple[float, int]]
     # Bounds of the largest reachable size, and the number of tries.
@@ -114,17 +117,57 @@ class MotionSolve:
     @property
     def posed_layer(self) -> Layer:
         """The layer with the motion, once every key is solved."""
-        keys = [
-            Keyframe(frame=moment.frame, pose=pose)
-            for moment, pose in zip(self.key_poses, self.poses, strict=True)
-        ]
-        given = self.applied
+        given = replace(self.applied, made=self._made_keys)
+        keys = self._keys
         if not given.parameters.travel and given.repeat_count == 1:
             keys.append(replace(keys[0], frame=given.last))
         if self.blend_pose is not None:
             keys.insert(0, Keyframe(frame=given.first, pose=self.blend_pose))
         until = max((each.last for each in self.replaced_motions), default=given.last)
         return splice_motion(self.document, self.before.id, keys, given, until)
+
+    @property
+    def _made_keys(self) -> tuple[MadeKey, ...]:
+        count = len(self.request.preset.phases)
+        return tuple(
+            MadeKey(
+                offset=moment.frame - self.applied.start,
+                targets={i: target.position for i, target in pose.targets.items()},
+            )
+            for moment, pose in zip(self.key_poses[:count], self.poses[:count], strict=True)
+        )
+
+    @property
+    def _keys(self) -> list[Keyframe]:
+        """The keys of one repeat, with what was changed by hand."""
+        edits, count = self.request.edits, len(self.request.preset.phases)
+        keys = []
+        for number, (moment, pose) in enumerate(
+            zip(self.key_poses, self.edited_poses, strict=True)
+        ):
+            before = None if edits is None else edits.kept.get(number % count)
+            if edits is not None and number in edits.deleted:
+                continue
+            key = Keyframe(frame=moment.frame, pose=pose)
+            if before is not None:
+                key = replace(before, frame=moment.frame, pose=pose)
+            keys.append(key)
+        if edits is not None and not self.applied.parameters.travel:
+            keys += self._inserted_keys({key.frame for key in keys})
+        return sorted(keys, key=lambda key: key.frame)
+
+    def _inserted_keys(self, taken: set[int]) -> list[Keyframe]:
+        """Return the keys that were inserted by hand, at their shares of the cycle."""
+        edits, given = self.request.edits, self.applied
+        period = (given.last - given.start) // given.repeat_count
+        keys = []
+        for key in () if edits is None else edits.others:
+            share = (key.frame - self.request.edited_start) / self.request.edited_period
+            frame = given.start + round(share * period)
+            if frame not in taken and frame < given.start + period:
+                keys.append(replace(key, frame=frame))
+                taken.add(frame)
+        return keys
 
     @property
     def replaced_motions(self) -> tuple[AppliedMotion, ...]:
@@ -153,8 +196,7 @@ def start_motion_solve(document: Document, identity: int, order: MotionRequest) 
             _("{layer!r} cannot move, because it contains no shape.").format(layer=before.name)
         )
     body = find_rest_body(before, order)
-    document, joints = with_handles_at_joints(document, identity, body, order)
-    document = with_limits(document, identity, order.limits)
+    document, joints = rig_body(document, identity, body, order.handles)
     into = document.layer(identity)
     lead_frames = count_blend_frames(before, order.first, document.fps)
     start = order.first + lead_frames
@@ -169,6 +211,7 @@ def start_motion_solve(document: Document, identity: int, order: MotionRequest) 
         start=start,
         last=start + order.repeat_count * period,
         repeat_count=order.repeat_count,
+        stride=plan_performance(order, body, period).stride,
     )
     lead = None
     if lead_frames:
@@ -201,7 +244,17 @@ def step_motion_solve(giving: MotionSolve) -> MotionSolve:
     for identity, lag in find_target_errors(giving.rig, pose).items():
         name = names[identity]
         short[name] = max(short.get(name, (0.0, 0)), (lag, moment.frame))
-    return replace(giving, poses=(*giving.poses, pose), target_errors=short)
+    edited = pose
+    if moment.shifts:
+        drag = DragSolver.begin(giving.rig, pose)
+        targets, pulled = moment.shifted(pose), moment.shifts.keys()
+        edited = drag.step_towards(targets, MOST_STEPS, pulled=pulled).make_pose(targets)
+    return replace(
+        giving,
+        poses=(*giving.poses, pose),
+        edited_poses=(*giving.edited_poses, edited),
+        target_errors=short,
+    )
 
 
 def solve_key_pose(rig: Rig, begin: Pose, moment: JointKeyPose) -> Pose:

@@ -36,6 +36,7 @@ def shift_layer(layer: Layer, by: complex) -> Layer:
         replace(key, value=replace(key.value, place=key.value.place + by))
         for key in layer.keys_of(IK_TARGET)
     )
+    motions = tuple(motion.shifted(by) for motion in layer.motions)
     return layer.with_keys_of(IK_TARGET, targets).with_poses(
         map(moved, layer.poses),
         corner=layer.corner + by,
@@ -44,6 +45,7 @@ def shift_layer(layer: Layer, by: complex) -> Layer:
         anchor=None if layer.anchor is None else layer.anchor + by,
         mirror=None if layer.mirror is None else layer.mirror + by.real,
         tracks=tracks,
+        motions=motions,
     )
 
 

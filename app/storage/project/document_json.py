@@ -30,6 +30,7 @@ from app.document import (
     Layer,
     LayerOrigin,
     LibraryPose,
+    MadeKey,
     Marker,
     Meshing,
     PictureFile,
@@ -99,6 +100,12 @@ def _read_joints(content: object, where: str) -> dict[str, int]:
     """Return the handles of joints by joint name."""
     joints = as_object(content, where)
     return {name: as_whole(handle, f"{where}.{name}") for name, handle in joints.items()}
+
+
+def _read_targets(content: object, where: str) -> dict[int, complex]:
+    """Return places by handle id."""
+    targets = as_object(content, where)
+    return {int(handle): POINT.read(at, f"{where}.{handle}") for handle, at in targets.items()}
 
 
 def _options(usual: FormatOptions) -> Codec:
@@ -247,6 +254,17 @@ BONE = record(
     Field("is_shown", FLAG, default=True),
     Field("is_directed", FLAG, legacy_default=False),
 )
+MADE_KEY = nested_record(
+    MadeKey,
+    Field("offset", WHOLE),
+    Field(
+        "targets",
+        Codec(
+            lambda targets: {str(handle): POINT.write(at) for handle, at in targets.items()},
+            _read_targets,
+        ),
+    ),
+)
 APPLIED_MOTION = record(
     AppliedMotion,
     Field("id", WHOLE),
@@ -262,12 +280,18 @@ APPLIED_MOTION = record(
         nested_record(
             Parameters,
             *(Field(name, NUMBER) for name in ("speed", "size", "energy", "start")),
+            *(
+                Field(name, NUMBER, default=0.0)
+                for name in ("lean", "head_delay", "arm_delay", "tail_delay")
+            ),
             *(Field(name, FLAG) for name in ("mirrored", "travel")),
         ),
     ),
     *(Field(name, WHOLE) for name in ("first", "start", "last")),
     Field("repeat_count", WHOLE, legacy_name="rounds"),
+    Field("stride", NUMBER, default=0.0),
     Field("digest", TEXT),
+    Field("made", list_of(MADE_KEY), default=()),
 )
 
 

@@ -4,7 +4,12 @@ from app.editor.actions import dialog_actions, editing, playback, tutorials, vie
 from app.editor.actions.action_spec import ActionSpec
 from app.editor.actions.layer_setup import cut_out_editing, handle_editing, stiffness_editing
 from app.editor.actions.posing import handles, limb_editing, pose_drag
-from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
+from app.editor.actions.posing.motion_presets import (
+    apply_motion,
+    joint_placement,
+    preset_setup,
+    rigging,
+)
 from app.editor.actions.project_files import export_settings, exporting, files, recovery, saving
 from app.editor.actions.timing import channel_keys, cycles, keys, sounds, timeline_drag, tracks
 from app.editor.actions.tracking import recording
@@ -93,7 +98,7 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
         (keys.use_next_tangent_mode, *keys.EASE_KEYS),
         (cycles.create_cycle, cycles.bake_cycle, cycles.end_cycle),
         (keys.add_marker_at_playhead, channel_keys.key_camera, timeline_drag.fit_timeline),
-        (preset_setup.begin_motion_setup, sounds.ask_sound_to_add),
+        (preset_setup.begin_motion_setup, rigging.rig_layer, sounds.ask_sound_to_add),
         (joint_placement.mirror_joints, joint_placement.reset_joints),
         (apply_motion.cancel_motion_job,),
     ),

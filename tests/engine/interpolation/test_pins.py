@@ -37,6 +37,7 @@ def pins_of(maps, *, pinned=(True, True, False), anchored=False):
     none = np.zeros((2, 3))
     return SegmentPins(
         is_pinned=np.array(pinned),
+        is_even=np.zeros(3, dtype=np.bool_),
         ends=ends,
         slopes=none + 0j,
         weights=none,
@@ -171,6 +172,7 @@ def test_limits_are_kept_where_pins_ask_too_much():
     own = pins_of(maps)
     far = SegmentPins(
         is_pinned=np.array([True, True, True]),
+        is_even=np.zeros(3, dtype=np.bool_),
         ends=own.ends,
         slopes=np.array([[3j, 0, 0], [0, 0, 0]]),
         weights=np.array([[1.0, 0, 0], [0, 0, 0]]),

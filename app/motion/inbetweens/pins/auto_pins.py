@@ -10,7 +10,9 @@ from app.document import (
     PinnedSegment,
     Variant,
     clip_segments,
+    find_chains,
     find_limbs,
+    ground_velocity_at,
     pinned_segments,
     pose_segments,
     with_stiffness,
@@ -20,7 +22,7 @@ from app.motion.inbetweens.outline_cache import SAMPLED, nbytes_or_0
 from app.motion.inbetweens.pins.limb_motion import firmness_on_limbs, rigid_points, segment_bones
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.segment_keys import segment_key
-from engine.arrays import Complexes, Floats
+from engine.arrays import Booleans, Complexes, Floats
 from engine.deform.correction.corrector import PointCorrector, build_corrector
 from engine.geometry import diameter
 from engine.interpolation import (
@@ -130,7 +132,8 @@ class AutoPins:
             if other is not None and SLOWEST < pace < np.inf:
                 # Pixels per frame, opposite to the velocity of the motion that is pinned.
                 away = self._velocity(other, 1 - side)[: len(layer.handles)]
-                slopes[side] = -self._pace(other, 1 - side) * away / pace
+                moving = ground_velocity_at(clip, other) * self._is_on_ground
+                slopes[side] = (moving - self._pace(other, 1 - side) * away) / pace
         anchor, firmness = layer.anchor if layer.has_parent else None, self._firmness(segment)
         limbs, bones, count = find_limbs(layer), None, len(layer.handles)
         if limbs is not None:
@@ -138,6 +141,7 @@ class AutoPins:
             firmness = firmness_on_limbs(layer, limbs, firmness, segment.is_pinned)
         return SegmentPins(
             is_pinned=segment.is_pinned,
+            is_even=self._is_on_ground & (segment.ground_velocity != 0.0),
             ends=np.array(ends)[:, :count],
             slopes=np.where(segment.fading, slopes, 0.0),
             weights=segment.fading.astype(np.float64),
@@ -160,6 +164,12 @@ class AutoPins:
         weights = sign / STEP * np.array(FORWARD, dtype=np.complex128)
         velocity: Complexes = weights @ np.array(steps)
         return velocity
+
+    @property
+    def _is_on_ground(self) -> Booleans:
+        """Whether each handle stands on the ground when pinned: the ends of limbs."""
+        ends = {chain.end for chain in find_chains(self.clip.layer.bones)}
+        return np.array([each.id in ends for each in self.clip.layer.handles], dtype=np.bool_)
 
     def _firmness(self, segment: PinnedSegment) -> Floats:
         """Return the firmness of each handle: 0 on a point of higher rank, 1 far from it.

@@ -1,6 +1,6 @@
 """Motions of bipeds, and the walk of all kinds."""
 
-from app.rigging.motions.curves import Curve, even_curve
+from app.rigging.motions.curves import EIGHTHS, Curve, even_curve
 from app.rigging.motions.leg_chains import STANDING, LimbMotion
 from app.rigging.motions.library.four_legs import WALK_ON_FOUR
 from app.rigging.motions.motion import Motion
@@ -18,10 +18,12 @@ WALK = Motion(
     label=_("Walk"),
     hint=_("One foot after the other, arms against legs"),
     seconds=1.0,
-    keys=24,
+    phases=EIGHTHS,
     templates={
         "biped-side": LimbMotion(
-            gait=Gait(stance=0.6, stride=0.8, lift=0.1, landings=LEFT_RIGHT, roll=25, gathered=0.1),
+            gait=Gait(
+                stance=0.5, stride=1.2, lift=0.12, landings=LEFT_RIGHT, roll=30, gathered=0.8
+            ),
             rise=even_curve(0.0, -0.02, 0.0, 0.02, 0.0, -0.02, 0.0, 0.02),
             turns={
                 "chest": even_curve(-3, -4, -3, -2, -3, -4, -3, -2),
@@ -34,7 +36,7 @@ WALK = Motion(
         ),
         "biped-front": LimbMotion(
             gait=Gait(
-                stance=0.6,
+                stance=0.5,
                 stride=0.3,
                 lift=0.1,
                 landings=LEFT_RIGHT,
@@ -64,11 +66,11 @@ RUN = Motion(
     label=_("Run"),
     hint=_("Long steps, and a moment in the air between them"),
     seconds=2 / 3,
-    keys=24,
+    phases=EIGHTHS,
     templates={
         "biped-side": LimbMotion(
             gait=Gait(
-                stance=0.38, stride=1.15, lift=0.15, landings=LEFT_RIGHT, gathered=0.1, roll=30
+                stance=0.375, stride=1.9, lift=0.18, landings=LEFT_RIGHT, gathered=1.0, roll=45
             ),
             rise=Curve(
                 ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
@@ -84,7 +86,7 @@ RUN = Motion(
         ),
         "biped-front": LimbMotion(
             gait=Gait(
-                stance=0.36,
+                stance=0.375,
                 stride=0.5,
                 lift=0.2,
                 landings=LEFT_RIGHT,
@@ -120,7 +122,7 @@ WAVE = Motion(
     label=_("Wave"),
     hint=_("An arm goes up, waves and comes down"),
     seconds=2.0,
-    keys=24,
+    phases=EIGHTHS,
     templates={
         kind: LimbMotion(
             turns=_GREETING,
@@ -137,7 +139,7 @@ NOD = Motion(
     label=_("Nod"),
     hint=_("The head says yes, twice"),
     seconds=1.5,
-    keys=24,
+    phases=EIGHTHS,
     templates={
         "biped-side": LimbMotion(
             turns={
@@ -205,7 +207,7 @@ JUMP = Motion(
     label=_("Jump"),
     hint=_("Crouch, leap, land and rise again"),
     seconds=1.25,
-    keys=15,
+    phases=EIGHTHS,
     templates={"biped-side": _LEAP, "biped-front": _LEAP},
 )
 

@@ -1,6 +1,6 @@
 """Motions of four-legged bodies."""
 
-from app.rigging.motions.curves import even_curve
+from app.rigging.motions.curves import EIGHTHS, even_curve
 from app.rigging.motions.leg_chains import LimbMotion
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.steps import Gait
@@ -16,11 +16,11 @@ _TRUNK = {
 # Four beats: a hind foot, then the front foot of its side.
 WALK_ON_FOUR = LimbMotion(
     gait=Gait(
-        stance=0.64,
-        stride=0.85,
+        stance=0.625,
+        stride=0.9,
         lift=0.1,
         landings=(("foot.L", 0.0), ("hand.L", 0.25), ("foot.R", 0.5), ("hand.R", 0.75)),
-        gathered=0.5,
+        gathered=0.4,
         roll=20,
     ),
     rise=even_curve(0.0, -0.01, 0.0, 0.01, 0.0, -0.01, 0.0, 0.01),
@@ -34,15 +34,15 @@ TROT = Motion(
     label=_("Trot"),
     hint=_("Diagonal feet step together, with a bounce between the steps"),
     seconds=0.75,
-    keys=24,
+    phases=EIGHTHS,
     templates={
         "four-legs": LimbMotion(
             gait=Gait(
-                stance=0.42,
-                stride=1.05,
+                stance=0.375,
+                stride=1.3,
                 lift=0.14,
                 landings=(("foot.L", 0.0), ("hand.R", 0.0), ("foot.R", 0.5), ("hand.L", 0.5)),
-                gathered=0.5,
+                gathered=0.7,
                 roll=28,
             ),
             rise=even_curve(0.0, -0.035, 0.0, 0.035, 0.0, -0.035, 0.0, 0.035),

@@ -1,6 +1,6 @@
 """Motions of bodies without joints."""
 
-from app.rigging.motions.curves import Curve, Leap, even_curve
+from app.rigging.motions.curves import EIGHTHS, Curve, Leap, even_curve
 from app.rigging.motions.library.bipeds import LEAPING
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.squash_stretch import SquashStretch
@@ -11,7 +11,7 @@ BREATHE = Motion(
     label=_("Breathe"),
     hint=_("The body swells and sinks, slowly"),
     seconds=3.0,
-    keys=8,
+    phases=EIGHTHS,
     templates={
         "anything": SquashStretch(
             swell=even_curve(0.0, 0.04, 0.08, 0.065, 0.03, 0.005),
@@ -25,7 +25,7 @@ SWAY = Motion(
     label=_("Sway"),
     hint=_("The body leans from side to side on its foot, as in the wind"),
     seconds=2.5,
-    keys=12,
+    phases=EIGHTHS,
     templates={
         "anything": SquashStretch(
             lean=even_curve(0.0, 11, 13, 0.0, -11, -13), stretch=even_curve(0, -0.01, -0.01)
@@ -40,7 +40,7 @@ HOP = Motion(
         "The body leaves the ground and lands, with both feet at once, or squashed and stretched"
     ),
     seconds=1.0,
-    keys=24,
+    phases=EIGHTHS,
     templates={
         "biped-side": LEAPING,
         "biped-front": LEAPING,

@@ -4,10 +4,15 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import AppliedMotion, is_motion_unedited
 from app.editor import Action, Project, Session, do
-from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
+from app.editor.actions.posing.motion_presets import (
+    apply_motion,
+    joint_placement,
+    preset_setup,
+    rigging,
+)
 from app.editor.tools import move_tool
 from app.editor.work.motion_setup import MotionSetup
-from app.rigging import KINDS, MOTIONS
+from app.rigging import KINDS, MOTIONS, other_side
 from app.texts import _, ngettext
 from app.ui.panels.motion_preset.diagram import draw_body_diagram, draw_joint_diagram
 from app.ui.shortcuts.keys import ALT, format_modified, shown_keys
@@ -52,7 +57,7 @@ def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Ac
     lines = (
         1
         + bool(preset_setup.apply_motion_disabled_reason(session, project))
-        + preset_setup.is_applied_motion_edited(session, project)
+        + preset_setup.are_edits_lost(session, project)
     )
     below = (2.0 + 1.5 * lines) * look.em + imgui.get_frame_height()
     imgui.begin_child("draft", ImVec2(0, max(imgui.get_content_region_avail().y - below, 1.0)))
@@ -81,7 +86,9 @@ def _draw_applied_motions(session: Session, look: Look, project: Project) -> lis
         actions += _row(look, project, given)
         imgui.pop_id()
     imgui.dummy(ImVec2(0, 0.3 * look.em))
-    return actions + draw_action_main_button(session, look, preset_setup.begin_motion_setup)
+    actions += draw_action_main_button(session, look, preset_setup.begin_motion_setup)
+    width = imgui.get_content_region_avail().x
+    return actions + draw_action_text_button(session, rigging.rig_layer, width)
 
 
 def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
@@ -90,7 +97,7 @@ def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
     text = _("{name}, frames {first} – {last}")
     imgui.text_unformatted(text.format(name=name, first=given.first, last=given.last))
     if not is_motion_unedited(project.layer, given):
-        small_text(look, _("You edited this motion by hand. It stays as it is."))
+        small_text(look, _("You edited this motion by hand. Other settings keep your edits."))
     widths = split_line(2)
     if text_button(_("Change…"), next(widths), _("Apply it again with other settings")):
         actions.append(do(preset_setup.edit_applied_motion, given))
@@ -129,7 +136,8 @@ def _joints(session: Session, look: Look, draft: MotionSetup) -> list[Action]:
         small_text(look, _("The drawing moves as a whole. It has no joints."))
         return []
     width = imgui.get_content_region_avail().x
-    actions = draw_joint_diagram(look, draft, ImVec2(width, DIAGRAM_HEIGHT * look.em))
+    actions = _questions(look, draft)
+    actions += draw_joint_diagram(look, draft, ImVec2(width, DIAGRAM_HEIGHT * look.em))
     small_text(
         look,
         _(
@@ -153,6 +161,33 @@ def _joints(session: Session, look: Look, draft: MotionSetup) -> list[Action]:
         if text_button(text, next(widths), hint, reason=reason):
             actions.append(spec.action)
     return actions + draw_action_text_button(session, joint_placement.reset_joints, next(widths))
+
+
+def _questions(look: Look, draft: MotionSetup) -> list[Action]:
+    """Ask which limb of a pair is nearer, where the drawing does not show it."""
+    actions: list[Action] = []
+    for end in draft.unsure:
+        is_leg = end.startswith("foot")
+        is_front = draft.kind == "four-legs" and not is_leg
+        text = (
+            _("Which leg is nearer?")
+            if is_leg
+            else _("Which front leg is nearer?")
+            if is_front
+            else _("Which arm is nearer?")
+        )
+        small_text(look, text, look.palette.warning)
+        widths = split_line(2)
+        for number, name in enumerate((end, other_side(end))):
+            action = joint_placement.swap_near_limbs if number else joint_placement.keep_near_limbs
+            at, other = draft.joints[name], draft.joints[other_side(name)]
+            side = _("The left one") if at.real < other.real else _("The right one")
+            if text_button(f"{side}###{end} {number}", next(widths), _("On the picture")):
+                actions.append(do(action, end))
+            if imgui.is_item_hovered() and draft.selected_joint != name:
+                # The joint lights up on the drawing.
+                actions.append(do(joint_placement.select_joint, name))
+    return actions
 
 
 def _motions(look: Look, draft: MotionSetup) -> list[Action]:
@@ -227,12 +262,6 @@ def _switches(look: Look, draft: MotionSetup) -> list[Action]:
         )
         if changed:
             actions.append(do(preset_setup.set_motion_parameters, travel=travels))
-    if draft.body_kind.parents:
-        imgui.same_line(0, 1.2 * look.em)
-        changed, bones = imgui.checkbox(_("Bones for limbs"), draft.bones)
-        draw_tooltip(_("Limbs bend only at their joints, and keep their lengths"))
-        if changed:
-            actions.append(do(preset_setup.set_motion_options, bones=bones))
     return actions
 
 
@@ -240,7 +269,7 @@ def _end(session: Session, look: Look, project: Project, draft: MotionSetup) -> 
     """Draw which motions are replaced, and the buttons that apply or cancel."""
     actions: list[Action] = []
     imgui.separator()
-    if draft.applied_motion is not None and preset_setup.is_applied_motion_edited(session, project):
+    if preset_setup.are_edits_lost(session, project):
         changed, replaces = imgui.checkbox(_("Replace edits"), draft.replaces_edits)
         if changed:
             actions.append(do(preset_setup.set_motion_options, replaces_edits=replaces))

@@ -8,11 +8,11 @@ chain of two bones is pinned, both bones turn further to bring it there.
 
 A foot, a hand or a head is one more part at the end of a chain, and moves like a bone. With an
 angle of its own, or pinned, its angle in the drawing's axes is blended instead, and a pinned one
-goes from place to place by 3t² − 2t³.
+goes from place to place by 3t² − 2t³, or evenly on ground that moves.
 """
 
 from cmath import exp, phase
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sqrt
@@ -100,7 +100,13 @@ class SegmentBones:
         """The motions of all parts at both keyframes."""
         return [self._fit(places) for places in self.ends]
 
-    def wanted(self, time: float, places: Complexes, pinned: Mapping[int, complex]) -> Complexes:
+    def wanted(
+        self,
+        time: float,
+        places: Complexes,
+        pinned: Mapping[int, complex],
+        even: Collection[int] = (),
+    ) -> Complexes:
         """Return where the points (p,) are wanted.
 
         Parameters
@@ -109,13 +115,16 @@ class SegmentBones:
             Of the points in the base.
         pinned : mapping of int to complex
             Targets of pinned points, by number.
+        even : collection of int
+            Numbers of pinned points that move evenly.
         """
         parts: dict[int, RigidPart] = {0: self._fit(places)[0]}
         for chain in self.chains:
             motions = self._blended(chain, time, parts[chain.parent])
             goal = pinned.get(chain.end)
             if goal is not None and chain.end_part is not None:
-                goal = self._pinned_place(chain, time)
+                share = time if chain.end in even else time * time * (3 - 2 * time)
+                goal = self._pinned_place(chain, share)
             if goal is not None and len(motions) == 2:
                 lack = self._end_lack(chain, time, motions[-1])
                 motions = _brought_to(chain, motions, goal - lack)
@@ -171,10 +180,10 @@ class SegmentBones:
             end = end._replace(turn=self.at_keys[0][own].turn * exp(1j * time * swept))
         return end if goal is None else end._replace(place=goal)
 
-    def _pinned_place(self, chain: ChainOfBones, time: float) -> complex:
-        """Return the place of a pinned rigid part at a chain's end."""
+    def _pinned_place(self, chain: ChainOfBones, share: float) -> complex:
+        """Return the place of a pinned rigid part after a share of its way."""
         first, last = (key[chain.end_part or 0].at(chain.joints[-1]) for key in self.at_keys)
-        return first + time * time * (3 - 2 * time) * (last - first)
+        return first + share * (last - first)
 
     def _parts_to_end(self, chain: ChainOfBones) -> tuple[int, ...]:
         """Return the parts between the body and a chain's end."""

@@ -18,13 +18,16 @@ class SegmentPins:
     """Handles pinned from one keyframe to the next, and the transition of all other handles.
 
     A pinned handle moves from its place at the first keyframe to its place at the second one by
-    3t² − 2t³. A handle pinned only in the previous or next segment starts or ends at its velocity
-    there. Its displacement is t(1−t)² s₀ − t²(1−t) s₁, with a weight that fades as (1−t)³ and t³.
-    The other handles follow the rigid motion that explains most of the displacement.
+    3t² − 2t³, or evenly on ground that moves. A handle pinned only in the previous or next segment
+    starts or ends at its velocity there. Its displacement is t(1−t)² s₀ − t²(1−t) s₁, with a weight
+    that fades as (1−t)³ and t³. The other handles follow the rigid motion that explains most of the
+    displacement.
 
     Attributes
     ----------
     is_pinned : bool, shape (m,)
+    is_even : bool, shape (m,)
+        Whether a pinned handle moves evenly.
     ends : complex128, shape (2, m)
         Places of the handles at the keyframes.
     slopes : complex128, shape (2, m)
@@ -40,6 +43,7 @@ class SegmentPins:
     """
 
     is_pinned: Booleans
+    is_even: Booleans
     ends: Complexes
     slopes: Complexes
     weights: Floats
@@ -55,8 +59,9 @@ class SegmentPins:
         known, motion = self._handle_targets(time, places[:count], anchor)
         held = places[:count] + known.offsets
         pinned = {int(i): complex(held[i]) for i in np.flatnonzero(self.is_pinned)}
+        even = np.flatnonzero(self.is_even).tolist()
         points = places[count:]
-        offsets = self.bones.wanted(time, motion.apply(points), pinned) - points
+        offsets = self.bones.wanted(time, motion.apply(points), pinned, even) - points
         weights = np.full(len(points), BONE_FIRMNESS)
         weights[: len(self.bones.rest[0])] = 0.0
         return known._replace(
@@ -68,7 +73,8 @@ class SegmentPins:
     ) -> tuple[PointTargets, Similarity]:
         """Return the targets of the handles, and the rigid motion of all others."""
         rest = 1.0 - time
-        wanted = self.ends[0] + time * time * (3.0 - 2.0 * time) * (self.ends[1] - self.ends[0])
+        share = np.where(self.is_even, time, time * time * (3.0 - 2.0 * time))
+        wanted = self.ends[0] + share * (self.ends[1] - self.ends[0])
         moving = time * rest * (rest * self.slopes[0] - time * self.slopes[1])
         offsets = np.where(self.is_pinned, wanted - places, moving)
         fading = rest**3 * self.weights[0] + time**3 * self.weights[1]

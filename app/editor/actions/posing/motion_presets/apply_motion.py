@@ -3,8 +3,9 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
-from app.document import RUBBERY, Command, Document
+from app.document import Command, Document, Layer, find_motion_edits
 from app.editor import pending_changes
 from app.editor.action import do
 from app.editor.actions import playback
@@ -47,12 +48,20 @@ def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
         return
     base = _without(project.document, draft)
     task = MotionJob(setup=draft, before=before, base=base)
-    order = _motion_request(draft, is_first=not before.motions)
+    order = _motion_request(draft, before)
     _step(session, project, task, partial(start_motion_solve, base, before.id, order))
 
 
-def _motion_request(draft: MotionSetup, *, is_first: bool) -> MotionRequest:
-    """Return the request for the solver; only the first motion may change bones and limits."""
+def _motion_request(draft: MotionSetup, before: Layer) -> MotionRequest:
+    """Return the request for the solver; what was edited by hand stays in the same preset."""
+    edits: dict[str, Any] = {}
+    given = draft.applied_motion
+    if given is not None and given.motion == draft.motion and not draft.replaces_edits:
+        edits = {
+            "edits": find_motion_edits(before, given),
+            "edited_start": given.start,
+            "edited_period": (given.last - given.start) // given.repeat_count,
+        }
     return MotionRequest(
         motion=draft.motion,
         kind=draft.kind,
@@ -62,10 +71,8 @@ def _motion_request(draft: MotionSetup, *, is_first: bool) -> MotionRequest:
         repeat_count=draft.rounds,
         facing=draft.facing,
         # The motion's own handles go to its dragged joints.
-        handles={} if draft.applied_motion is None else draft.applied_motion.joints,
-        stiff=is_first,
-        bones=draft.bones,
-        limits=RUBBERY.bounds if is_first else None,
+        handles={} if given is None else given.joints,
+        **edits,
     )
 
 
@@ -79,17 +86,12 @@ def _without(document: Document, draft: MotionSetup) -> Document:
     if given is None:
         return document
     kept = [key for key in layer.keys if key.motion != given.id]
-    bones = layer.bones
-    if not draft.bones:
-        limbs = preset_setup.limb_joint_handles(given)
-        bones = tuple(bone for bone in bones if limbs.isdisjoint(bone.ends))
     return document.with_layer(
         replace(
             layer,
             keys=tuple(kept) or layer.keys[:1],
             cycles=tuple(each for each in layer.cycles if each.first != given.start),
             motions=tuple(each for each in layer.motions if each is not given),
-            bones=bones,
         )
     )
 
@@ -189,7 +191,7 @@ def apply_motion_at_size(
     if found is None or given is None:
         session.notices.show(_("This motion was deleted."))
         return
-    draft = preset_setup.setup_of_applied_motion(found, given)
+    draft = preset_setup.setup_of_applied_motion(project, found, given)
     parameters = replace(draft.parameters, size=size)
     pending_changes.run_when_idle(
         session, do(_begin, replace(draft, parameters=parameters)), _("Apply motion preset")

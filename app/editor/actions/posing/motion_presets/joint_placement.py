@@ -10,7 +10,8 @@ from app.editor.actions.action_spec import named_action, unless
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.motion_setup import MotionSetup
-from app.rigging import find_kind, other_side, suggest_joints
+from app.rigging import find_kind, other_side, swap_limbs
+from app.solving import JointGuess, guess_joints
 from app.texts import _
 from engine.geometry import diameter
 
@@ -31,10 +32,11 @@ BESIDE: Mapping[str, complex] = {
 }
 
 
-def find_joints(layer: Layer, kind: str) -> dict[str, complex]:
+def find_joints(project: Project, layer: Layer, kind: str) -> JointGuess:
     """Return a body kind's joints in a layer: at its handles, or by the handles' names."""
     body = find_kind(kind)
-    joints = dict(suggest_joints(layer.domain.loops, body))
+    guess = guess_joints(layer, kind, project.runtimes.layers[layer.id].picture.rgba)
+    joints = dict(guess.joints)
     near = NEAR * diameter(layer.domain.outline)
     named = {h.name: h.position for h in layer.handles if h.name in body.parents}
     free = [h.position for h in layer.handles if h.name not in named]
@@ -44,7 +46,23 @@ def find_joints(layer: Layer, kind: str) -> dict[str, complex]:
             joints[name] = nearest
             free.remove(nearest)
     joints |= named
-    return {name: joints[name] for name in body.parents if name in joints}
+    unsure = tuple(name for name in guess.unsure if name not in named)
+    return JointGuess({name: joints[name] for name in body.parents if name in joints}, unsure)
+
+
+def swap_near_limbs(session: Session, end: str) -> None:
+    """Make the other limb of a pair the near one; the question is answered."""
+    draft = session.tools.motion_setup
+    if draft is not None:
+        swapped = draft.with_joints(swap_limbs(draft.joints, end), end)
+        session.tools.select(swapped.with_answer(end))
+
+
+def keep_near_limbs(session: Session, end: str) -> None:
+    """Keep the guessed near limb of a pair; the question is answered."""
+    draft = session.tools.motion_setup
+    if draft is not None:
+        session.tools.select(draft.with_answer(end))
 
 
 def select_joint(session: Session, name: str | None) -> None:

@@ -57,11 +57,11 @@ def begin_motion_setup(session: Session, project: Project) -> None:
     frame = playback.current_frame(session, project)
     here = [each for each in project.layer.motions if each.first <= frame < each.last]
     if here:
-        draft = setup_of_applied_motion(project.layer, here[-1])
+        draft = setup_of_applied_motion(project, project.layer, here[-1])
     else:
         kept = kept_motion_setup(session, project)
         draft = (
-            _new(project.layer, frame)
+            new_motion_setup(project, project.layer, frame)
             if kept is None
             else replace(kept, first=frame, past=(), selected_joint=None)
         )
@@ -98,53 +98,47 @@ def kept_motion_setup(session: Session, project: Project) -> MotionSetup | None:
     return draft if (draft.layer, draft.domain) == (layer.id, layer.domain) else None
 
 
-def _new(layer: Layer, frame: int) -> MotionSetup:
+def new_motion_setup(project: Project, layer: Layer, frame: int) -> MotionSetup:
     """Return a draft for a layer without a motion at a frame: like the last motion, or a guess.
 
     The joints of the last motion are reused.
     """
     earlier = [each for each in layer.motions if each.first <= frame]
     if earlier:
-        draft = setup_of_applied_motion(layer, earlier[-1])
+        draft = setup_of_applied_motion(project, layer, earlier[-1])
         return replace(draft, applied_motion=None, first=frame, parameters=Parameters(), rounds=1)
     kind = guess_kind(layer.domain.loops)
-    joints = find_joints(layer, kind.name)
+    guess = find_joints(project, layer, kind.name)
     return MotionSetup(
         layer=layer.id,
         domain=layer.domain,
         kind=kind.name,
-        motion=_first_motion(kind.name, joints),
-        joints=joints,
-        suggested=joints,
+        motion=_first_motion(kind.name, guess.joints),
+        joints=guess.joints,
+        suggested=guess.joints,
+        unsure=guess.unsure,
         first=frame,
     )
 
 
-def setup_of_applied_motion(layer: Layer, given: AppliedMotion) -> MotionSetup:
+def setup_of_applied_motion(project: Project, layer: Layer, given: AppliedMotion) -> MotionSetup:
     """Return the draft that gives an applied motion."""
     there = {handle.id: handle.position for handle in layer.handles}
     names = given.joints.items()
     joints = {name: there[handle] for name, handle in names if handle in there}
-    ends = {handle for bone in layer.bones for handle in bone.ends}
     return MotionSetup(
         layer=layer.id,
         domain=layer.domain,
         kind=given.kind,
         motion=given.motion,
         joints=joints if given.kind != "anything" else {},
-        suggested=find_joints(layer, given.kind),
+        suggested=find_joints(project, layer, given.kind).joints,
         parameters=given.parameters,
         rounds=given.repeat_count,
         facing=given.facing,
-        bones=not ends.isdisjoint(limb_joint_handles(given)),
         first=given.first,
         applied_motion=given,
     )
-
-
-def limb_joint_handles(given: AppliedMotion) -> set[int]:
-    """Return the ids of the handles that are joints of limbs, or links of a chain."""
-    return {handle for name, handle in given.joints.items() if "." in name}
 
 
 def _first_motion(kind: str, joints: Collection[str]) -> str:
@@ -167,15 +161,16 @@ def set_body_kind(session: Session, project: Project, kind: str) -> None:
     if draft is None or kind == draft.kind:
         return
     others = {**draft.others, draft.kind: draft.joints}
-    suggested = find_joints(project.layer, kind)
-    joints = others.get(kind, suggested)
+    guess = find_joints(project, project.layer, kind)
+    joints = others.get(kind, guess.joints)
     fits = kind in MOTIONS[draft.motion].templates
     session.tools.select(
         replace(
             draft,
             kind=kind,
             joints=joints,
-            suggested=suggested,
+            suggested=guess.joints,
+            unsure=guess.unsure,
             others=others,
             motion=draft.motion if fits else _first_motion(kind, joints),
             facing=None,
@@ -195,26 +190,26 @@ def set_motion_preset(session: Session, motion: str) -> None:
 
 
 def set_motion_parameters(session: Session, /, **values: Any) -> None:
-    """Set speed, size, energy, mirrored, start or travel."""
+    """Set parameters by name."""
     draft = session.tools.motion_setup
     if draft is not None:
         session.tools.select(replace(draft, parameters=replace(draft.parameters, **values)))
 
 
 def set_motion_options(session: Session, /, **values: Any) -> None:
-    """Set rounds, facing, bones, or whether edits are replaced."""
+    """Set rounds or facing."""
     if session.tools.motion_setup is not None:
         session.tools.select(replace(session.tools.motion_setup, **values))
 
 
-def is_applied_motion_edited(session: Session, project: Project) -> bool:
-    """Return whether the applied motion that a draft replaces was edited by hand."""
+def are_edits_lost(session: Session, project: Project) -> bool:
+    """Return whether the draft cannot keep edits by hand: it is of another motion preset."""
     draft = session.tools.motion_setup
-    return (
-        draft is not None
-        and draft.applied_motion is not None
-        and not is_motion_unedited(project.layer, draft.applied_motion)
-    )
+    if draft is None or draft.applied_motion is None:
+        return False
+    given = draft.applied_motion
+    is_same = given.motion == draft.motion and given.kind == draft.kind and bool(given.made)
+    return not is_same and not is_motion_unedited(project.layer, given)
 
 
 def apply_motion_disabled_reason(session: Session, project: Project) -> str | None:
@@ -230,8 +225,8 @@ def apply_motion_disabled_reason(session: Session, project: Project) -> str | No
         )
         missing = ", ".join(map(_, draft.missing_joints))
         return text.format(motion=draft.preset.label, joints=missing)
-    if is_applied_motion_edited(session, project) and not draft.replaces_edits:
-        return _("You edited the motion by hand. Tick “Replace edits” to apply it again.")
+    if are_edits_lost(session, project) and not draft.replaces_edits:
+        return _("You edited the motion by hand. Tick “Replace edits” to apply another one.")
     return None
 
 
