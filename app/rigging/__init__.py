@@ -24,7 +24,6 @@ from app.rigging.kinematics.springs import (
     turn_arm as turn_arm,
 )
 from app.rigging.motions.body import Body as Body, other_side as other_side
-from app.rigging.motions.catalogue import find_motion as find_motion
 from app.rigging.motions.facing import guess_facing as guess_facing
 from app.rigging.motions.kinds import (
     KINDS as KINDS,
@@ -32,9 +31,10 @@ from app.rigging.motions.kinds import (
     find_kind as find_kind,
     near_side as near_side,
 )
-from app.rigging.motions.library.table import MOTIONS as MOTIONS
+from app.rigging.motions.library.table import MOTIONS as MOTIONS, find_motion as find_motion
 from app.rigging.motions.motion import (
     Motion as Motion,
+    MotionTemplate as MotionTemplate,
     Parameters as Parameters,
     Performance as Performance,
 )

@@ -71,14 +71,15 @@ def find_motion_edits(layer: Layer, motion: AppliedMotion) -> MotionEdits:
     }
     made = {key.offset: number for number, key in enumerate(motion.made)}
     kept = {made[offset]: key for offset, key in own.items() if offset in made}
-    shifts = {}
+    shifts: dict[int, dict[int, complex]] = {}
     for number, key in kept.items():
         ways = {
             handle: target.position - motion.made[number].targets[handle]
             for handle, target in key.pose.targets.items()
             if handle in motion.made[number].targets
         }
-        shifts[number] = {handle: way for handle, way in ways.items() if abs(way) > LEAST_EDIT}
+        ways = {handle: way for handle, way in ways.items() if abs(way) > LEAST_EDIT}
+        shifts |= {number: ways} if ways else {}
     others = tuple(key for offset, key in own.items() if offset not in made)
     gone = frozenset(range(len(motion.made))) - kept.keys() - {0}
     return MotionEdits(shifts, gone, others if motion.made else (), kept)

@@ -47,6 +47,10 @@ class LimbMotion(MotionTemplate):
         """Whether its steps move the body forward."""
         return self.gait is not None and self.gait.stride > 0
 
+    @property
+    def has_trunk(self) -> bool:
+        return True
+
     def instantiate(
         self, body: Body, parameters: Parameters, timing: Timing = EVEN
     ) -> MotionInstance:

@@ -97,6 +97,11 @@ class MotionTemplate(ABC):
         """Whether its steps move the body forward."""
         return False
 
+    @property
+    def has_trunk(self) -> bool:
+        """Whether it moves a trunk, which may lean, with parts that may be delayed."""
+        return False
+
     @abstractmethod
     def instantiate(
         self, body: Body, parameters: Parameters, timing: Timing = EVEN

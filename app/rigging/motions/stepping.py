@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.rigging.motions.body import Body
+from app.rigging.motions.body import Body, other_side
 from app.rigging.motions.motion import Parameters
 from app.rigging.motions.steps import BodyLeg, Gait, find_leg, required_drop
 from app.rigging.motions.timing import EVEN, Timing
@@ -75,10 +75,16 @@ class FootSteps:
         return max(lowered) / self.reach
 
     def _middles(self) -> dict[str, float]:
-        """Return the centre of each foot's movement."""
+        """Return the centre of each foot's movement.
+
+        From the side, both feet of a pair are gathered below the middle of their roots.
+        """
         joints, gathered = self.body.joints, self.gait.gathered
         middles = {}
         for foot, leg in self.legs.items():
-            rest, root = joints[foot].real, joints[leg.joints[0]].real
-            middles[foot] = rest + gathered * (root - rest)
+            rest, roots = joints[foot].real, [joints[leg.joints[0]].real]
+            other = self.legs.get(other_side(foot))
+            if self.body.kind.is_side_view and other is not None:
+                roots.append(joints[other.joints[0]].real)
+            middles[foot] = rest + gathered * (sum(roots) / len(roots) - rest)
         return middles

@@ -15,7 +15,6 @@ from engine.geometry import diameter
 SAME_JOINT = 0.004  # of the drawing's diameter: a handle this close to a joint is its handle
 HEAD = 1.5  # radius of a stiff head, in distances of its joint from the outline
 STIFF_HEAD = 20.0
-LIMBS = (("hip", "knee", "foot"), ("shoulder", "elbow", "hand"))
 DEPTH = 0.6  # of near limbs, and below 0 of far limbs
 # Of the bone before a joint: the depth of a joint reaches this far.
 EXTENT = 1.3
@@ -58,11 +57,9 @@ def rig_body(
 
 def find_bones(body: Body) -> Iterator[tuple[str, str]]:
     """Yield the bones of a body's limbs, of its head and of a chain, each from root to end."""
-    for side in "LR":
-        for root, middle, end in LIMBS:
-            there = [f"{name}.{side}" for name in (root, middle, end)]
-            there = [name for name in there if name in body.joints]
-            yield from pairwise(there)
+    for end in ("foot.L", "foot.R", "hand.L", "hand.R"):
+        if end in body.joints:
+            yield from pairwise(body.limb_joints(end))
     if "neck" in body.joints and "head" in body.joints:
         yield "neck", "head"
     if body.kind.name == "chain":

@@ -5,7 +5,16 @@ import pytest
 import shapely
 from silhouettes import BODIES, CHILD, FISH, HORSE, KANGAROO, SNAKE, WALKER, dot, drawn
 
-from app.rigging import KINDS, find_kind, guess_kind, suggest_joints
+from app.rigging import (
+    KINDS,
+    find_kind,
+    guess_kind,
+    guess_near_limbs,
+    name_near_limbs,
+    near_side,
+    suggest_joints,
+)
+from app.rigging.anatomy.near_limbs import NearLimb
 from engine.geometry import contains, signed_area
 
 
@@ -47,7 +56,9 @@ def test_from_the_side_the_leg_ahead_goes_with_the_arm_behind():
     assert joints["hand.R"].real > 40 > -40 > joints["hand.L"].real
     for ankle in ("foot.L", "foot.R"):
         assert joints[ankle].imag < 50
-    assert not any(name.startswith(("hip.", "shoulder.")) for name in joints)
+    for side in "LR":
+        root, knee, ankle = (joints[f"{name}.{side}"] for name in ("hip", "knee", "foot"))
+        assert root.imag > knee.imag > ankle.imag
 
 
 def test_a_kangaroo_on_its_tail_has_one_leg_and_a_heel():
@@ -118,3 +129,46 @@ def test_corner_that_stays_in_a_disc_of_the_body_is_no_leg():
     assert signed_area(outline) * signed_area(hole) > 0
     loops = [outline[::-1], hole] if signed_area(outline) < 0 else [outline, hole[::-1]]
     assert guess_kind(loops).name == "anything"
+
+
+def side_view(near_is_left, *, shade=(150, 150), line=False, drop=0.0):
+    """Return the shape of two legs and its picture; the near leg may stand lower."""
+    ways = [[100j, -30 + 50j, -40 + 0j], [100j, 30 + 50j, 40 + 0j]]
+    near = 0 if near_is_left else 1
+    ways[near][-1] -= 1j * drop
+    loops = drawn(([100j, 200j], 90), *((way, 24) for way in ways))
+    corner = complex(-120, -60)
+    rgba = np.full((400, 240, 4), 255, np.uint8)
+    rgba[..., :3] = shade[0]
+    columns = np.arange(240) + corner.real
+    far = columns > 0 if near_is_left else columns < 0
+    rgba[:, far, :3] = shade[1]
+    if line:
+        rgba[round(400 - (75 - corner.imag)) : round(400 - (68 - corner.imag)), far, :3] = 20
+    joints = {
+        f"{name}.{side}": place
+        for side, way in zip("LR", ways, strict=True)
+        for name, place in zip(("hip", "knee", "foot"), way, strict=True)
+    }
+    return loops, joints, rgba, corner
+
+
+@pytest.mark.parametrize("near_is_left", [True, False])
+@pytest.mark.parametrize("sign", [{"shade": (150, 100)}, {"line": True}, {"drop": 12.0}])
+def test_near_leg_is_brighter_lower_or_not_crossed_by_a_line(near_is_left, sign):
+    (found,) = guess_near_limbs(*side_view(near_is_left, **sign))
+    assert found.near == ("foot.L" if near_is_left else "foot.R")
+    assert found.is_sure
+
+
+def test_near_leg_of_a_plain_silhouette_is_not_sure():
+    (found,) = guess_near_limbs(*side_view(near_is_left=True))
+    assert not found.is_sure
+
+
+@pytest.mark.parametrize("facing", [1, -1])
+def test_near_limbs_are_named_after_the_near_side(facing):
+    _, joints, _, _ = side_view(near_is_left=True)
+    named = name_near_limbs(joints, [NearLimb("foot.L", is_sure=True)], facing)
+    assert named[f"foot.{near_side(facing)}"] == joints["foot.L"]
+    assert set(named.values()) == set(joints.values())

@@ -8,7 +8,7 @@ import pytest
 from bodies import body
 from numpy.testing import assert_allclose
 
-from app.rigging import MOTIONS, Body, Parameters, find_kind
+from app.rigging import MOTIONS, Body, Parameters, Timing, find_kind
 from engine.errors import EngineError
 
 USUAL = Parameters()
@@ -19,8 +19,13 @@ each_motion = pytest.mark.parametrize(("name", "kind"), FITTING)
 each_gait = pytest.mark.parametrize(("name", "kind"), TRAVELLING)
 
 
+def moments_of(name, of, parameters, shares):
+    performed = MOTIONS[name].perform(of, parameters)
+    return [performed.pose_at((share + parameters.start) % 1.0, share) for share in shares]
+
+
 def places(name, kind, shares, parameters=USUAL, of=None):
-    moments = MOTIONS[name].poses_at(of or body(kind), parameters, list(shares))
+    moments = moments_of(name, of or body(kind), parameters, shares)
     return {joint: np.array([each.places[joint] for each in moments]) for joint in moments[0][0]}
 
 
@@ -51,7 +56,7 @@ def test_limbs_keep_their_lengths(name, kind):
 @each_gait
 def test_planted_feet_have_one_ground_speed(name, kind):
     shares = np.linspace(0, 1, 121)
-    moments = MOTIONS[name].poses_at(body(kind), USUAL, shares.tolist())
+    moments = moments_of(name, body(kind), USUAL, shares)
     seen, steps = set(), []
     for before, after in pairwise(moments):
         for foot in before.standing & after.standing:
@@ -77,7 +82,7 @@ def test_nobody_crouches_for_long_steps():
 def test_travelling_plants_feet_and_gets_on_by_a_stride(name, kind):
     travelling = Parameters(travel=True)
     shares = np.linspace(0, 2, 161)
-    moments = MOTIONS[name].poses_at(body(kind), travelling, shares.tolist())
+    moments = moments_of(name, body(kind), travelling, shares)
     for before, after in pairwise(moments):
         for foot in before.standing & after.standing:
             assert_allclose(after.places[foot], before.places[foot], atol=1e-9 * SIZE)
@@ -130,12 +135,52 @@ def test_speed_is_of_time_alone_and_start_is_a_share_of_the_cycle():
         assert_allclose(late[joint], way[5:], atol=1e-9 * SIZE)
 
 
-def test_legs_of_one_drawing_never_pass_through_each_other():
-    for kind, pairs in (("biped-side", ["foot"]), ("four-legs", ["foot", "hand"])):
-        moved = places("walk", kind, np.linspace(0, 1, 61), Parameters(size=2.0))
-        for tip in pairs:
-            ahead = (moved[f"{tip}.L"] - moved[f"{tip}.R"]).real
-            assert ahead.min() > 0, (kind, tip)
+@each_motion
+def test_cycles_have_few_keys_at_whole_frames(name, kind):
+    motion = MOTIONS[name]
+    assert kind in motion.kinds
+    for frames in (12, 17, 24):
+        times = motion.key_times(USUAL, frames)
+        assert 4 <= len(times) <= 8
+        offsets = [offset for offset, _ in times]
+        assert offsets[0] == 0
+        assert offsets == sorted(set(offsets))
+        assert offsets[-1] < frames
+
+
+@each_gait
+def test_feet_stand_still_on_the_ground_between_keys_at_whole_frames(name, kind):
+    """At 17 frames the phases of 8 keys lie between frames."""
+    motion, frames = MOTIONS[name], 17
+    times = motion.key_times(USUAL, frames)
+    shares = [(phase, offset / frames) for offset, phase in times]
+    performed = motion.perform(body(kind), USUAL, Timing((*shares, (1.0, 1.0))))
+    moments = [performed.pose_at(phase) for _, phase in times]
+    for (one, _), (other, _), before, after in zip(
+        times, times[1:], moments, moments[1:], strict=False
+    ):
+        for foot in before.standing & after.standing:
+            way = after.places[foot] - before.places[foot]
+            ground = -performed.stride * (other - one) / frames
+            assert_allclose(way, ground, atol=1e-9 * SIZE)
+
+
+def test_parts_of_a_body_are_delayed_by_a_share_of_the_cycle():
+    shares = np.linspace(0, 1, 13)
+    usual = places("walk", "biped-side", shares)
+    late = places("walk", "biped-side", shares, Parameters(tail_delay=0.25))
+    assert_allclose(late["head"], usual["head"])
+    rise = usual["tail"] - usual["hips"], late["tail"] - late["hips"]
+    assert_allclose(rise[1][3:], rise[0][:-3], atol=1e-9 * SIZE)
+
+
+def test_a_leaning_trunk_leans_the_way_that_the_body_faces():
+    shares = np.linspace(0, 1, 13)
+    rest = body("biped-side")
+    usual = places("walk", "biped-side", shares)
+    leaning = places("walk", "biped-side", shares, Parameters(lean=20.0))
+    assert ((leaning["chest"] - usual["chest"]).real * rest.facing > 0.02 * SIZE).all()
+    assert_allclose(leaning["hips"].real, usual["hips"].real, atol=1e-9 * SIZE)
 
 
 @pytest.mark.parametrize(
@@ -157,7 +202,7 @@ def test_what_does_not_fit_is_refused(name, kind, joints, parameters, said):
     if joints is not None:
         rest = Body(kind=find_kind(kind), joints=joints, box=rest.box)
     with pytest.raises(EngineError, match=said):
-        MOTIONS[name].poses_at(rest, parameters, [0.0])
+        MOTIONS[name].perform(rest, parameters)
 
 
 def test_parameters_have_ranges():

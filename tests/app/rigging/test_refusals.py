@@ -35,7 +35,7 @@ REFUSED = {
     "a flat box": lambda: Body(kind=find_kind("anything"), joints={}, box=(0j, 100 + 0j)),
     "a limb that is not there": lambda: body().limb_joints("hand.L"),
     "a length that is not there": lambda: body().path_length(["hips", "nose"]),
-    "a share that is no number": lambda: MOTIONS["walk"].poses_at(body(), Parameters(), [NAN]),
+    "a phase that is no number": lambda: MOTIONS["walk"].perform(body(), Parameters()).pose_at(NAN),
     "no frames a second": lambda: MOTIONS["walk"].frames(Parameters(), NAN),
     "no outline": lambda: guess_facing(find_kind("biped-side"), STANDING, np.empty(0, complex)),
     "places too far for a spring": lambda: simulate_spring(

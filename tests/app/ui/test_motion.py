@@ -6,11 +6,16 @@ import numpy as np
 import pytest
 from silhouettes import paint
 
-from app.document import is_motion_unedited
+from app.document import find_motion_edits, is_motion_unedited
 from app.editor import pending_changes
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import remove_handles, suggest_handles
-from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
+from app.editor.actions.posing.motion_presets import (
+    apply_motion,
+    joint_placement,
+    preset_setup,
+    rigging,
+)
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.project_files import saving
 from app.storage.project_file import load_project
@@ -212,7 +217,7 @@ def test_given_again_its_handles_go_where_joints_were_dragged(window):
     assert abs(project.layer.handle(handles["joint.2"]).position - place) < 2
 
 
-def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
+def test_what_was_edited_by_hand_stays_unless_another_preset_replaces_it(window, ghost):
     key = ghost.layer.keys[2]
     playback.scrub(window.session, key.frame)
     window.settle()
@@ -220,7 +225,18 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
     moved = replace(target, position=target.position + 4j)
     set_targets(window.session, {identity: moved})
     window.settle()
+    (given,) = ghost.layer.motions
+    apply_motion.change_applied_motion(window.session, ghost.layer.id, given.first, size=0.8)
+    arrive(window, ghost)
+    (given,) = ghost.layer.motions
+    assert given.parameters.size == 0.8
+    assert not is_motion_unedited(ghost.layer, given)
+    assert find_motion_edits(ghost.layer, given).shifts[2][identity].imag > 2
+    playback.stop_playback(window.session)
+    playback.scrub(window.session, 0)
     preset_setup.begin_motion_setup(window.session)
+    assert not preset_setup.apply_motion_disabled_reason(window.session, ghost)
+    preset_setup.set_motion_preset(window.session, "sway")
     window.frames(3)
     assert "edited the motion by hand" in preset_setup.apply_motion_disabled_reason(
         window.session, ghost
@@ -229,6 +245,19 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
     assert ghost.motion_job is None
     click(window, "//Animate/**/Replace edits")
     assert not preset_setup.apply_motion_disabled_reason(window.session, ghost)
+
+
+def test_rig_this_makes_handles_and_bones_in_one_step(window):
+    project = window.open(paint(window.folder, "child"))
+    before = project.document
+    rigging.rig_layer(window.session)
+    window.settle()
+    layer = project.layer
+    names = {handle.id: handle.name for handle in layer.handles}
+    bones = {tuple(names[end] for end in bone.ends) for bone in layer.bones}
+    assert {("hip.L", "knee.L"), ("knee.L", "foot.L"), ("elbow.R", "hand.R")} <= bones
+    editing.undo(window.session)
+    assert project.document is before
 
 
 def test_another_motion_follows(window, ghost):

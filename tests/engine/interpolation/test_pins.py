@@ -209,6 +209,7 @@ def test_pins_far_out_of_reach_cost_few_solves(monkeypatch):
     base = stage_of(SHAPE, handles, ANCHOR, beside).between(maps, Variant.NU)
     pins = SegmentPins(
         is_pinned=np.zeros(3, dtype=bool),
+        is_even=np.zeros(3, dtype=np.bool_),
         ends=np.array([f(handles) for f in maps]),
         slopes=np.array([[9, -9, 0], [0, 0, 0]], dtype=complex),
         weights=np.array([[1, 1, 1], [0, 0, 0]], dtype=float),

@@ -22,7 +22,7 @@ WALK = Motion(
     templates={
         "biped-side": LimbMotion(
             gait=Gait(
-                stance=0.5, stride=1.2, lift=0.12, landings=LEFT_RIGHT, roll=30, gathered=0.8
+                stance=0.5, stride=1.2, lift=0.12, landings=LEFT_RIGHT, roll=30, gathered=0.7
             ),
             rise=even_curve(0.0, -0.02, 0.0, 0.02, 0.0, -0.02, 0.0, 0.02),
             turns={

@@ -17,10 +17,10 @@ _TRUNK = {
 WALK_ON_FOUR = LimbMotion(
     gait=Gait(
         stance=0.625,
-        stride=0.9,
+        stride=0.8,
         lift=0.1,
         landings=(("foot.L", 0.0), ("hand.L", 0.25), ("foot.R", 0.5), ("hand.R", 0.75)),
-        gathered=0.4,
+        gathered=0.25,
         roll=20,
     ),
     rise=even_curve(0.0, -0.01, 0.0, 0.01, 0.0, -0.01, 0.0, 0.01),

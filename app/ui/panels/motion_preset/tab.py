@@ -12,9 +12,14 @@ from app.editor.actions.posing.motion_presets import (
 )
 from app.editor.tools import move_tool
 from app.editor.work.motion_setup import MotionSetup
-from app.rigging import KINDS, MOTIONS, other_side
+from app.rigging import KINDS, MOTIONS
 from app.texts import _, ngettext
 from app.ui.panels.motion_preset.diagram import draw_body_diagram, draw_joint_diagram
+from app.ui.panels.motion_preset.near_limbs import draw_near_limb_questions
+from app.ui.panels.motion_preset.parameters import (
+    draw_applied_parameters,
+    draw_parameter_sliders,
+)
 from app.ui.shortcuts.keys import ALT, format_modified, shown_keys
 from app.ui.shortcuts.widgets import draw_action_main_button, draw_action_text_button
 from app.ui.style.sliders import Scale, slider
@@ -31,10 +36,6 @@ from app.ui.style.widgets import (
     text_button,
 )
 
-SPEEDS = Scale(left=0.25, right=4.0, logarithmic=True)
-SIZES = Scale(left=0.1, right=2.0)
-ENERGIES = Scale(left=0.0, right=2.0)
-SHARES = Scale(left=0.0, right=0.99)
 REPEATS = Scale(left=1.0, right=20.0)
 KIND_HEIGHT, DIAGRAM_HEIGHT = 3.2, 9.5  # em
 IN_A_ROW = 5  # largest number of motions
@@ -98,6 +99,7 @@ def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
     imgui.text_unformatted(text.format(name=name, first=given.first, last=given.last))
     if not is_motion_unedited(project.layer, given):
         small_text(look, _("You edited this motion by hand. Other settings keep your edits."))
+    actions += draw_applied_parameters(look, project, given)
     widths = split_line(2)
     if text_button(_("Change…"), next(widths), _("Apply it again with other settings")):
         actions.append(do(preset_setup.edit_applied_motion, given))
@@ -136,7 +138,7 @@ def _joints(session: Session, look: Look, draft: MotionSetup) -> list[Action]:
         small_text(look, _("The drawing moves as a whole. It has no joints."))
         return []
     width = imgui.get_content_region_avail().x
-    actions = _questions(look, draft)
+    actions = draw_near_limb_questions(look, draft)
     actions += draw_joint_diagram(look, draft, ImVec2(width, DIAGRAM_HEIGHT * look.em))
     small_text(
         look,
@@ -163,33 +165,6 @@ def _joints(session: Session, look: Look, draft: MotionSetup) -> list[Action]:
     return actions + draw_action_text_button(session, joint_placement.reset_joints, next(widths))
 
 
-def _questions(look: Look, draft: MotionSetup) -> list[Action]:
-    """Ask which limb of a pair is nearer, where the drawing does not show it."""
-    actions: list[Action] = []
-    for end in draft.unsure:
-        is_leg = end.startswith("foot")
-        is_front = draft.kind == "four-legs" and not is_leg
-        text = (
-            _("Which leg is nearer?")
-            if is_leg
-            else _("Which front leg is nearer?")
-            if is_front
-            else _("Which arm is nearer?")
-        )
-        small_text(look, text, look.palette.warning)
-        widths = split_line(2)
-        for number, name in enumerate((end, other_side(end))):
-            action = joint_placement.swap_near_limbs if number else joint_placement.keep_near_limbs
-            at, other = draft.joints[name], draft.joints[other_side(name)]
-            side = _("The left one") if at.real < other.real else _("The right one")
-            if text_button(f"{side}###{end} {number}", next(widths), _("On the picture")):
-                actions.append(do(action, end))
-            if imgui.is_item_hovered() and draft.selected_joint != name:
-                # The joint lights up on the drawing.
-                actions.append(do(joint_placement.select_joint, name))
-    return actions
-
-
 def _motions(look: Look, draft: MotionSetup) -> list[Action]:
     heading(look, _("Preset"))
     actions: list[Action] = []
@@ -209,24 +184,9 @@ def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
     heading(look, _("Settings"))
     actions: list[Action] = []
     now = draft.parameters
-    for name, text, scale, form, hint in (
-        ("speed", _("Speed"), SPEEDS, "%.2f ×", _("How many times as fast as usual")),
-        ("size", _("Size"), SIZES, "%.2f ×", _("How far limbs swing, and how far steps go")),
-        ("energy", _("Energy"), ENERGIES, "%.2f ×", _("How much the body bounces and sways")),
-        (
-            "start",
-            _("Start"),
-            SHARES,
-            "%.2f",
-            _("Where in its cycle the motion begins, from 0 to 1"),
-        ),
-    ):
-        label(look, text)
-        entered = slider(look, name, getattr(now, name), scale, text=form, hint=hint)
-        if entered is not None:
-            actions.append(
-                do(preset_setup.set_motion_parameters, **{name: scale.clamp(entered.value)})
-            )
+    changed, _is_final = draw_parameter_sliders(look, now, draft.preset.template_for(draft.kind))
+    if changed:
+        actions.append(do(preset_setup.set_motion_parameters, **changed))
     label(look, _("Repeats"))
     hint = _("How many times the motion plays")
     entered = slider(look, "rounds", draft.rounds, REPEATS, text="%.0f", hint=hint)

@@ -68,6 +68,14 @@ class SegmentPins:
             offsets=np.append(known.offsets, offsets), weights=np.append(known.weights, weights)
         )
 
+    @property
+    def _is_end(self) -> Booleans:
+        """Whether each handle is the end of a chain of two bones."""
+        ends = [] if self.bones is None else [c.end for c in self.bones.chains if len(c.parts) == 2]
+        is_end = np.zeros(len(self.is_pinned), dtype=np.bool_)
+        is_end[ends] = True
+        return is_end
+
     def _handle_targets(
         self, time: float, places: Complexes, anchor: complex
     ) -> tuple[PointTargets, Similarity]:
@@ -79,7 +87,9 @@ class SegmentPins:
         offsets = np.where(self.is_pinned, wanted - places, moving)
         fading = rest**3 * self.weights[0] + time**3 * self.weights[1]
         weights = np.where(self.is_pinned, 1.0, fading)
-        motion = fit_rigid(places, offsets, weights, anchor if self.is_anchored else None)
+        # Bones bring the ends of their chains to their places, wherever the body is.
+        carrying = np.where(self._is_end, 0.0, weights)
+        motion = fit_rigid(places, offsets, carrying, anchor if self.is_anchored else None)
         rigid = motion.apply(places) - places
         offsets = rigid + weights * (offsets - rigid)
         return PointTargets(offsets, self.firmness, self.is_anchored), motion

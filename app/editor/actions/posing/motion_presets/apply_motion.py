@@ -177,22 +177,25 @@ def _show_unreached_joints(session: Session, giving: MotionSolve) -> None:
         text,
         topic="motion",
         label=_("Use size {size:.2f}").format(size=size),
-        action=do(apply_motion_at_size, giving.before.id, giving.applied.first, size),
+        action=do(change_applied_motion, giving.before.id, giving.applied.first, size=size),
     )
 
 
 @with_project
-def apply_motion_at_size(
-    session: Session, project: Project, layer: int, first: int, size: float
+def change_applied_motion(
+    session: Session, project: Project, layer: int, first: int, /, **values: Any
 ) -> None:
-    """Apply a motion that begins at a frame again, at another size."""
+    """Apply a motion that begins at a frame again, with other parameters.
+
+    What was edited by hand stays.
+    """
     found = project.document.layer(layer) if layer in project.runtimes.layers else None
     given = next((each for each in found.motions if each.first == first), None) if found else None
     if found is None or given is None:
         session.notices.show(_("This motion was deleted."))
         return
     draft = preset_setup.setup_of_applied_motion(project, found, given)
-    parameters = replace(draft.parameters, size=size)
+    parameters = replace(draft.parameters, **values)
     pending_changes.run_when_idle(
         session, do(_begin, replace(draft, parameters=parameters)), _("Apply motion preset")
     )
