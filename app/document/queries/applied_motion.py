@@ -60,6 +60,10 @@ class MotionEdits(NamedTuple):
     others: tuple[Keyframe, ...]
     kept: Mapping[int, Keyframe]
 
+    @property
+    def are_any(self) -> bool:
+        return bool(self.shifts or self.deleted or self.others)
+
 
 def find_motion_edits(layer: Layer, motion: AppliedMotion) -> MotionEdits:
     """Return what was changed by hand in one repeat of a motion preset."""

@@ -124,7 +124,9 @@ class MotionSolve:
         if self.blend_pose is not None:
             keys.insert(0, Keyframe(frame=given.first, pose=self.blend_pose))
         until = max((each.last for each in self.replaced_motions), default=given.last)
-        return splice_motion(self.document, self.before.id, keys, given, until)
+        edits = self.request.edits
+        has_edits = edits is not None and edits.are_any
+        return splice_motion(self.document, self.before.id, keys, given, until, has_edits=has_edits)
 
     @property
     def _made_keys(self) -> tuple[MadeKey, ...]:

@@ -27,11 +27,18 @@ def count_blend_frames(layer: Layer, first: int, fps: float) -> int:
 
 
 def splice_motion(
-    document: Document, identity: int, keys: Sequence[Keyframe], given: AppliedMotion, until: int
+    document: Document,
+    identity: int,
+    keys: Sequence[Keyframe],
+    given: AppliedMotion,
+    until: int,
+    *,
+    has_edits: bool = False,
 ) -> Layer:
     """Return a layer whose keys in the range of a motion are replaced by the motion's.
 
-    `keys` are those of one repeat and of the blend in. `given` gets the digest of its keys.
+    `keys` are those of one repeat and of the blend in. `given` gets the digest of its keys, unless
+    they have edits by hand.
     Overlapping motions are dropped, and cycles that repeat into it are baked. If the motion
     replaces a longer one, keys up to the frame `until` are deleted.
     """
@@ -60,7 +67,7 @@ def splice_motion(
         keys=tuple(sorted([*kept, *own], key=lambda key: key.frame)),
         cycles=tuple(sorted(cycles, key=lambda cycle: cycle.first)),
     )
-    given = replace(given, digest=digest_motion(layer, given))
+    given = replace(given, digest="" if has_edits else digest_motion(layer, given))
     motions.append(given)
     return replace(layer, motions=tuple(sorted(motions, key=lambda each: each.first)))
 

@@ -1,5 +1,6 @@
 """Handles that stay during a segment: where they are, keyframes, streams, and proofs."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -228,3 +229,14 @@ def test_pins_far_out_of_reach_cost_few_solves(monkeypatch):
     assert (a + b).max() <= 1.002 * WIDE.sigma_a
     assert (a - b).min() >= 0.998 * WIDE.sigma_b
     assert (b / a).max() <= 1.005 * WIDE.k
+
+
+def test_pinned_handles_on_moving_ground_move_evenly():
+    both = pins_of(keyframes(), pinned=(True, True, True))
+    known = replace(both, ends=np.array([HANDLES, HANDLES + 0.4]))
+    even = replace(known, is_even=np.array([True, False, False]))
+    for time in (0.25, 0.5, 0.8):
+        targets = even.targets(time, HANDLES, ANCHOR)
+        ways = HANDLES + targets.offsets - HANDLES
+        assert_allclose(ways[0], 0.4 * time, atol=1e-12)
+        assert_allclose(ways[1:], 0.4 * time * time * (3 - 2 * time), atol=1e-12)
