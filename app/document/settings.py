@@ -17,6 +17,9 @@ from engine.domain.outline.enclosure import Detail
 from engine.maps import Bounds
 from engine.variant import Variant
 
+# Usual triangles of a picture: fewest, most, and the pixels of one in between.
+LEAST_TRIANGLES, USUAL_TRIANGLES, PIXELS_OF_TRIANGLE = 8_000, 20_000, 100
+
 Framing = Literal["canvas", "fit"]
 VARIANTS = tuple(Variant)
 FRAMINGS: tuple[Framing, ...] = get_args(Framing)
@@ -248,6 +251,15 @@ class Meshing:
 
     detail: Detail = "normal"
     triangles: int = 100_000
+
+    @classmethod
+    def of_size(cls, size: tuple[int, int]) -> Self:
+        """Return the usual meshing of a picture of this size in pixels.
+
+        More triangles bend no better as seen, but take longer.
+        """
+        area = size[0] * size[1] // PIXELS_OF_TRIANGLE
+        return cls(triangles=round(min(max(area, LEAST_TRIANGLES), USUAL_TRIANGLES), -3))
 
     def __post_init__(self) -> None:
         details = get_args(Detail)

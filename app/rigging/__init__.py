@@ -15,7 +15,7 @@ from app.rigging.anatomy.near_limbs import (
     swap_limbs as swap_limbs,
 )
 from app.rigging.kinematics.chains import bend_side as bend_side, solve_chain as solve_chain
-from app.rigging.kinematics.recordings import fit_keys as fit_keys
+from app.rigging.kinematics.recordings import FittedKeys as FittedKeys, fit_keys as fit_keys
 from app.rigging.kinematics.springs import (
     FADE_FRAMES as FADE_FRAMES,
     SpringResponse as SpringResponse,

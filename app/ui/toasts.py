@@ -10,7 +10,7 @@ from app.ui.style.widgets import TOAST, small_text
 
 SECONDS = {"info": 5.0, "good": 8.0, "error": 15.0}
 FADE = 0.25  # seconds
-WIDTH = 24.0  # em
+WIDTH, HEIGHT = 24.0, 8.0  # em: of a message, its height roughly
 ICONS = {
     "info": icons.ICON_FA_CIRCLE_INFO,
     "good": icons.ICON_FA_CIRCLE_CHECK,
@@ -63,8 +63,11 @@ def _draw_toast(
         # A dialog is in the middle, with its buttons at its lower edge.
         imgui.set_next_window_pos(window.work_pos + ImVec2(gap, gap))
     elif session.project is not None and drawing is not None:
-        corner = drawing.pos + ImVec2(gap, drawing.size.y - gap)
-        imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(0, 1))
+        low, size = drawing.pos + ImVec2(gap, gap), drawing.size - ImVec2(gap, gap) * 2
+        # Above the timeline, or above the drawing if the guide's card is there.
+        is_low = not _is_guide_near(low + ImVec2(0, size.y), look)
+        corner, pivot = low + ImVec2(0, size.y * is_low), ImVec2(0, float(is_low))
+        imgui.set_next_window_pos(corner, imgui.Cond_.always, pivot)
     else:
         height = window.work_size.y - imgui.get_frame_height() - 2 * gap
         corner = window.work_pos + ImVec2(gap, height)
@@ -86,6 +89,15 @@ def _draw_toast(
     imgui.pop_style_color()
     imgui.pop_style_var(3)
     return actions, is_hovered
+
+
+def _is_guide_near(corner: ImVec2, look: Look) -> bool:
+    """Return whether the guide's card is where a message at a lower left corner would be."""
+    card = imgui.internal.find_window_by_name("###guide")
+    if card is None or not card.was_active:
+        return False
+    is_beside = card.pos.x < corner.x + WIDTH * look.em
+    return is_beside and card.pos.y + card.size.y > corner.y - HEIGHT * look.em
 
 
 _FLAGS = (

@@ -243,6 +243,7 @@ def _sound(window: Film, path: Path) -> None:
         window.act(editing.edit_document, channel_commands.set_key(channel, frame, volume))
     window.act(sounds.select_sound, talk.name)
     window.show_tab("Animate")
+    scroll_to(window, "//Animate/**/##seconds")
     _still(window, path)
 
 

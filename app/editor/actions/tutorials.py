@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.document import (
+    PRESETS,
     Document,
     FrameRange,
     Layer,
@@ -18,7 +19,9 @@ from app.document import (
     scene_commands,
 )
 from app.editor.action import do
+from app.editor.actions import editing
 from app.editor.actions.action_spec import named_action, unless
+from app.editor.actions.posing import handles
 from app.editor.actions.project_files import files, saving
 from app.editor.actions.project_files.saving import PROJECT
 from app.editor.error_reports import run_job
@@ -98,11 +101,32 @@ def update_tutorial(session: Session) -> None:
             session.tutorial.end()
         else:
             session.tutorial.show(_attached(session, guide))
+            if project is not None and guide.handle_place is None:
+                _prepare_own_drawing(session, project)
     elif guide.project is not project:
         session.tutorial.end()
     elif session.tools.active_tool is None and project.timeline.gesture is None:
         # The next step must not disturb a drag.
         session.tutorial.show(_advanced(session, project, guide))
+
+
+def _prepare_own_drawing(session: Session, project: Project) -> None:
+    """Set a drawing up as the giraffe is: handles, a loop, an easing, and a GIF to export."""
+    layer, document = project.layer, project.document
+    if layer.still or len(layer.keys) > 1 or layer.handles:
+        return
+    handles.suggest_handles(session)
+    longest = max(document.canvas)
+    width, height = (max(round(side * min(SIZE[0] / longest, 1.0)), 1) for side in document.canvas)
+    settings = replace(document.export.in_format(FORMAT), size=(width, height))
+    start = {pose_channel(layer.id): frozenset({layer.keys[0].frame})}
+    for command in (
+        scene_commands.set_loop(loop=True),
+        channel_commands.set_easing(start, PRESETS["in-out"]),
+        scene_commands.set_export(settings),
+    ):
+        editing.edit_document(session, command)
+    session.display.focus_panel("Handle")
 
 
 def is_first_pose_changed(layer: Layer) -> bool:

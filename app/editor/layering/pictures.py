@@ -86,7 +86,7 @@ def make_posable(session: Session, project: Project, identity: int) -> None:
     pending_changes.begin_pending_change(session, project, kind, work, done)
 
 
-def _shape(imported: ImportedLayer, identity: int, meshing: Meshing) -> _LoadedLayer:
+def _shape(imported: ImportedLayer, identity: int, meshing: Meshing | None) -> _LoadedLayer:
     """Return a posable layer for an imported layer."""
     # A plain background of an opaque picture is removed first.
     is_cut_out = bool((imported.picture.rgba[..., 3] == 0).any())

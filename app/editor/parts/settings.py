@@ -17,7 +17,7 @@ class SessionSettings(Revised):
     preferences: Preferences = field(default_factory=Preferences)
     saved_preferences: Preferences = field(init=False)  # as on the disk
     autosave: Autosave = field(init=False)
-    default_meshing: Meshing = field(default_factory=Meshing)  # of new pictures
+    default_meshing: Meshing | None = None  # of new pictures; None follows their size
     # Whether values are prepared before they are shown: in-betweens, corrections, series for
     # smooth playback, measured distortion and the extent of the motion. Most tests turn this off.
     prepares_ahead: bool = True

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from app.document import Playhead
 from app.editor.work.pending_change import PendingChange
+from app.rigging import FittedKeys
 from app.texts import _
 
 
@@ -74,6 +75,8 @@ class Recording:
         Whether the pointer has moved. Otherwise it is a click, unless the body moved under it.
     is_written : bool
         Whether the track has the recorded keys.
+    fits : dict
+        Fitted keys by the step of smoothing, of the scale and the values in `fits_of`.
     """
 
     layer: int
@@ -89,3 +92,10 @@ class Recording:
     is_over: bool = False
     has_moved: bool = True
     is_written: bool = False
+    fits_of: tuple[float, list[complex]] = field(default_factory=lambda: (0.0, []))
+    fits: dict[int, FittedKeys] = field(default_factory=dict)
+
+    def keep_fits_of(self, source: tuple[float, list[complex]]) -> None:
+        """Forget fits of another scale or of other values."""
+        if self.fits_of != source:
+            self.fits_of, self.fits = source, {}

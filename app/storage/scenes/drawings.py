@@ -95,7 +95,7 @@ def merge_layers(drawing: LayeredPicture, path: Path) -> LayeredPicture:
     return replace(merged, summary=log, sha256=drawing.sha256, is_merged=True)
 
 
-def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
+def open_picture(path: Path, meshing: Meshing | None, cut_out: CutOut = CutOut()) -> OpenedScene:
     """Read a picture, find its outline, and return a document that shows it as drawn.
 
     Raises `LissomError` or `EngineError` if the file is no picture, or has no subject with an
@@ -106,7 +106,7 @@ def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
     return build_scene(single_layer_drawing(path, data, picture), meshing, cut_out)
 
 
-def open_layered(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
+def open_layered(path: Path, meshing: Meshing | None, cut_out: CutOut = CutOut()) -> OpenedScene:
     """Read a layered drawing, and make a layer of each of its layers.
 
     A layer that is fully opaque, or without a shape, becomes a still picture. If this is true of
@@ -116,7 +116,7 @@ def open_layered(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
     return _scene(read_layered(path), meshing, cut_out, is_cut_out=True)
 
 
-def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
+def open_merged(path: Path, meshing: Meshing | None, cut_out: CutOut = CutOut()) -> OpenedScene:
     """Read a layered drawing as one picture: the merged one in the file, or its visible layers."""
     drawing = read_layered(path)
     merged = merge_layers(drawing, path)
@@ -149,7 +149,7 @@ def _flattened(drawing: LayeredPicture) -> Bytes:
     return flatten_layers(document_of_drawing(drawing, layers), textures, largest=max(drawing.size))
 
 
-def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
+def open_pictures(paths: Sequence[Path], meshing: Meshing | None) -> OpenedScene:
     """Read several pictures, and make a layer of each, the first one at the back.
 
     The canvas has the size of the largest picture; the others are centred.
@@ -185,9 +185,9 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
 
 
 def _scene(
-    drawing: LayeredPicture, meshing: Meshing, cut_out: CutOut, *, is_cut_out: bool
+    drawing: LayeredPicture, meshing: Meshing | None, cut_out: CutOut, *, is_cut_out: bool
 ) -> OpenedScene:
-    count = len(drawing.layers)
+    count, meshing = len(drawing.layers), meshing or Meshing.of_size(drawing.size)
     share = max(min(FEWEST_TRIANGLES, MOST_TOGETHER // count), meshing.triangles // count)
     each = replace(meshing, triangles=min(meshing.triangles, share))
 

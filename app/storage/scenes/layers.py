@@ -34,7 +34,7 @@ DRAWN = (
 def make_posable_layer(
     imported: ImportedLayer,
     identity: int,
-    meshing: Meshing,
+    meshing: Meshing | None,
     cut_out: CutOut = CutOut(),
     *,
     is_cut_out: bool,
@@ -45,6 +45,7 @@ def make_posable_layer(
     still picture. Otherwise the `cut_out` separates it.
     """
     picture = imported.picture
+    meshing = meshing or Meshing.of_size(picture.size)
     notices: tuple[str, ...] = (
         _("the picture is opaque everywhere, so there is no shape to pose"),
     )

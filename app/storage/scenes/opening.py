@@ -69,13 +69,14 @@ class CutOutResult:
         return self.find_holes()
 
 
-def build_scene(drawing: LayeredPicture, meshing: Meshing, cut_out: CutOut) -> OpenedScene:
+def build_scene(drawing: LayeredPicture, meshing: Meshing | None, cut_out: CutOut) -> OpenedScene:
     """Return the scene of a drawing of a single layer.
 
     Raises `EngineError` if the picture has no subject with an outline.
     """
     (imported,) = drawing.layers
     picture = imported.picture
+    meshing = meshing or Meshing.of_size(picture.size)
     domain, remedies = build_picture_domain(
         picture.rgba, triangles=meshing.triangles, detail=meshing.detail, cut_out=cut_out
     )

@@ -44,7 +44,7 @@ def label(look: Look, text: str) -> None:
     """Label the next field on the same line, which takes the rest of the width."""
     imgui.align_text_to_frame_padding()
     imgui.text_colored(look.palette.dim, text)
-    imgui.same_line(LABEL_WIDTH * look.em)
+    imgui.same_line(max(LABEL_WIDTH * look.em, imgui.calc_text_size(text).x + 0.5 * look.em))
     imgui.set_next_item_width(FILL)
 
 

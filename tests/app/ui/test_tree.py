@@ -483,6 +483,34 @@ def test_group_of_mouths_is_offered_as_a_switch(window, scene, ids, use):
     assert scene.layer_list.dismissed_suggestions == {"mouth"}
 
 
+def test_no_row_moves_while_a_folded_group_is_dragged(window, scene, ids, use):
+    command = group_commands.group_layers([ids["ah"], ids["oh"]], "mouth")
+    window.act(editing.edit_document, command)
+    window.act(set_active_layer, ids["hat"])
+    window.frames(3)
+    key = next(row.key for row in scene.tree if row.group)
+    if next(row for row in scene.tree if row.group).is_open:
+        window.act(toggle_tree_row, key)
+    window.frames(3)
+    before, places = [row.key for row in scene.tree], []
+
+    def drag(robot):
+        places.append(robot.item_info(row_of(ids["hat"])).rect_full.min.y)
+        robot.mouse_move(row_of(key))
+        robot.mouse_down(0)
+        goal = robot.item_info(row_of(ids["stick"])).rect_full.get_center()
+        robot.mouse_move_to_pos(goal)
+        robot.yield_(2)
+        places.append(robot.item_info(row_of(ids["hat"])).rect_full.min.y)
+        assert [row.key for row in scene.tree] == before
+        robot.key_press(window.Key.escape)
+        robot.mouse_up(0)
+
+    use(drag)
+    assert places[0] == places[1]
+    assert scene.selection.active == ids["hat"]
+
+
 def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
     for names, path in ((("ah", "oh"), "mouth"), (("head", "stick"), "body")):
         command = group_commands.group_layers([ids[name] for name in names], path)

@@ -10,6 +10,7 @@ from pathlib import Path
 from app.document import ExportSettings, FrameRange
 from app.editor import pending_changes
 from app.editor.action import Action, do
+from app.editor.actions import playback
 from app.editor.actions.action_spec import named_action
 from app.editor.actions.posing.pose_commit import key_pose_command
 from app.editor.error_reports import as_sentence, report_failure, run_job
@@ -69,6 +70,8 @@ def start_export(session: Session, project: Project, out: Path) -> None:
             answers=((_("Replace"), do(replace_export_files, out)),),
         )
         return
+    # Playback would take the time of the export.
+    playback.stop_playback(session)
     session.export.begin()
     pending_changes.run_when_idle(session, do(_begin, request), _("Export"), changes=False)
 

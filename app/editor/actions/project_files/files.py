@@ -241,7 +241,7 @@ def _layer_runtimes(document: Document, pictures: Mapping[int, Picture]) -> dict
     return dict(zip(pictures, made, strict=True))
 
 
-def _read(path: Path, meshing: Meshing, *, as_one_picture: bool) -> OpenedFile:
+def _read(path: Path, meshing: Meshing | None, *, as_one_picture: bool) -> OpenedFile:
     if path.suffix.lower() == PROJECT:
         return _read_project(path)
     read = open_picture

@@ -12,6 +12,7 @@ from app.document import (
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.posing.pose_drag import release_drag
+from app.editor.actions.tracking.smoothing import fit_recording
 from app.editor.actions.tracking.track_dragging import key_pending_targets, key_track_target
 from app.editor.actions.tracking.track_space import base_frame_at, handle_index
 from app.editor.error_reports import report_failure
@@ -21,14 +22,10 @@ from app.editor.session import Session, with_project
 from app.editor.work.track_keys import RecordedSample, Recording, TrackTarget
 from app.errors import LissomError
 from app.motion import BaseMotionFrame, reuse_corrections
-from app.rigging import fit_keys
 from app.texts import _
 from engine.geometry import Similarity
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
-# Largest distance of the fitted motion from the recorded one, in pixels of the screen like tremor:
-# without smoothing and with full smoothing.
-CLOSEST, SMOOTHEST = 0.3, 12.0
 SMOOTHING = 0.5  # initial value
 NO_RECORDING = _("The recording could not be keyed")
 IDLE = _("Nothing is being recorded.")
@@ -223,7 +220,7 @@ def _write(project: Project, take: Recording) -> None:
     if values is None:
         return
     fresh = before or Track(handles=(take.handle,), keys=(TrackKey(frame=0, place=0),))
-    fitted = _fitted(project, take, values)
+    fitted = fit_recording(take, values, project.document.frames.last)
 
     def own(frame: int) -> int | None:
         return track_source_frame(project.document, fresh, _wrapped(project, frame))
@@ -244,20 +241,6 @@ def _write(project: Project, take: Recording) -> None:
     command = track_commands.put_track(take.layer, replace(fresh, keys=row))
     project.history.do(replace(command, label=_("Record drag")), gesture=take.gesture)
     take.is_written = True
-
-
-def _fitted(
-    project: Project, take: Recording, values: list[complex]
-) -> list[tuple[int, complex, complex]]:
-    """Fit the recorded values by few keys; return their frames, places and velocities.
-
-    Frames count on over the end of a loop. One key is at the end, since the last frame of a loop is
-    its first frame again.
-    """
-    tolerance = CLOSEST * (SMOOTHEST / CLOSEST) ** take.smoothing / take.scale
-    times, seam = [sample.time for sample in take.samples], project.document.frames.last
-    fitted = fit_keys(times, values, tolerance, required=(seam,))
-    return list(zip(*(each.tolist() for each in fitted), strict=True))
 
 
 def _values(project: Project, take: Recording) -> list[complex] | None:

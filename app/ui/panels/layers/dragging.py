@@ -5,7 +5,6 @@ from imgui_bundle import ImVec2, imgui
 from app.document import TreeRow
 from app.editor import Action, Project, do
 from app.editor.layering.layer_list import add_layers_to_group, move_layers_beside
-from app.editor.layering.layer_selection import select_layers
 from app.editor.layering.parenting import attach_layers, is_same_or_descendant
 from app.editor.layering.switches import add_to_switch
 from app.texts import ngettext
@@ -22,14 +21,13 @@ def drag_layer_row(
     """Let the last item, a row, be dragged between two other rows or onto a row.
 
     A drop onto a layer attaches; a drop onto a group or a switch adds a member. The row of a group
-    or a switch selects all its layers and drags them.
+    or a switch drags all its layers. Nothing is selected meanwhile, so that no row moves.
     """
     actions: list[Action] = []
     if imgui.begin_drag_drop_source():
-        imgui.set_drag_drop_payload_py_id(MOVED, row.layers[0])
-        if row.layer is None and set(project.selected_layers) != set(row.layers):
-            actions.append(do(select_layers, *row.layers))
-        dragged = _dragged(project, row.layers[0])
+        number = project.tree.index(row)
+        imgui.set_drag_drop_payload_py_id(MOVED, number)
+        dragged = _dragged(project, number)
         text, count = row.name, len(dragged)
         if not set(dragged) <= set(row.layers):
             text = ngettext("{count} layer", "{count} layers", count).format(count=count)
@@ -61,15 +59,18 @@ def drag_layer_row(
     return actions
 
 
-def _dragged(project: Project, identity: int) -> tuple[int, ...]:
-    """Return the dragged layers: all selected layers if the row's is among them."""
-    return project.selected_layers if identity in project.selected_layers else (identity,)
+def _dragged(project: Project, number: int) -> tuple[int, ...]:
+    """Return the layers of the dragged row: all selected layers if the row's are among them."""
+    if number >= len(project.tree):
+        return ()
+    dragged, chosen = project.tree[number].layers, project.selected_layers
+    return chosen if set(dragged) <= set(chosen) else dragged
 
 
-def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
+def _onto(project: Project, row: TreeRow, number: int) -> Action | None:
     """Return the action of a drop onto a row; None if the drop has no effect."""
-    dragged = _dragged(project, identity)
-    if set(row.layers) <= set(dragged):
+    dragged = _dragged(project, number)
+    if not dragged or set(row.layers) <= set(dragged):
         return None
     if row.group is not None:
         return do(add_layers_to_group, row.group.name, *dragged)
@@ -79,17 +80,19 @@ def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
     return do(attach_layers, row.layers[0], *dragged)
 
 
-def _is_circle(project: Project, row: TreeRow, identity: int) -> bool:
+def _is_circle(project: Project, row: TreeRow, number: int) -> bool:
     """Return whether a drop would attach layers to their own descendant."""
     return row.layer is not None and any(
-        is_same_or_descendant(project, row.layer.id, each) for each in _dragged(project, identity)
+        is_same_or_descendant(project, row.layer.id, each) for each in _dragged(project, number)
     )
 
 
-def _beside(project: Project, identity: int, dragged: int, *, is_above: bool) -> list[Action]:
+def _beside(project: Project, identity: int, number: int, *, is_above: bool) -> list[Action]:
     """Return the action of a drop above or below another layer."""
-    moved = _dragged(project, dragged)
-    return [] if identity in moved else [do(move_layers_beside, identity, is_above, *moved)]
+    moved = _dragged(project, number)
+    if not moved or identity in moved:
+        return []
+    return [do(move_layers_beside, identity, is_above, *moved)]
 
 
 def _show(look: Look, low: ImVec2, high: ImVec2, *, is_onto: bool, is_above: bool) -> None:

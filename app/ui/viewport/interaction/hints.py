@@ -86,8 +86,8 @@ def draw_badges(
     step = find_first_step(project)
     if step is None or tutorials.is_tutorial_shown(session):
         return []
-    below = corner + ImVec2(room.x / 2, room.y - 3.2 * look.em)
-    return _draw_pill(look, HINTS[step], below, room.x)
+    # Messages are below, and so are feet.
+    return _draw_pill(look, HINTS[step], corner + ImVec2(room.x / 2, 0.5 * look.em), room.x)
 
 
 def find_first_step(project: Project) -> int | None:
