@@ -26,7 +26,7 @@ from app.texts import _
 from engine.geometry import Similarity
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
-SMOOTHING = 0.5  # initial value
+SMOOTHING = 0.3  # initial value
 NO_RECORDING = _("The recording could not be keyed")
 IDLE = _("Nothing is being recorded.")
 

@@ -6,7 +6,7 @@ from app.rigging import FittedKeys, fit_keys
 # Largest distance of the fitted motion from the recorded one without smoothing, in pixels of the
 # screen like tremor. Each step multiplies it.
 CLOSEST, STEP, STEPS = 0.3, 1.35, 24
-FEWEST = 0.07  # keys of a recorded frame with full smoothing
+FEWEST, LEAST = 0.07, 4.0  # keys with full smoothing: of a recorded frame, of a short recording
 
 
 def fit_recording(
@@ -27,7 +27,7 @@ def fit_recording(
         return take.fits[step]
 
     most = len(fit(0).frames)
-    fewest = min(max(FEWEST * (times[-1] - times[0]), 2.0), most)
+    fewest = min(max(FEWEST * (times[-1] - times[0]), LEAST), most)
     wanted = most * (fewest / most) ** take.smoothing
     low, high = 0, STEPS
     while low < high:
