@@ -695,10 +695,9 @@ def test_script_names_layers_that_bend_as_a_limb(drawing):
     ],
 )
 def test_wrong_limbs_of_layers_are_refused_by_name(drawing, bones, message):
+    script = {**LIMB, "layers": [*LIMB["layers"], SCRIPT["layers"][2]], "bones": bones}
     with pytest.raises(LissomError, match=message):
-        layers = [*LIMB["layers"], SCRIPT["layers"][2]]
-        script = parse_pose_script({**LIMB, "layers": layers, "bones": bones})
-        pose_document(drawing, script, str)
+        pose_document(drawing, parse_pose_script(script), str)
 
 
 def test_what_fades_in_is_seen_in_a_model(folder):
