@@ -33,6 +33,7 @@ class CopiedChannel:
     layer: Layer | None
     channel: Channel[Any]
     keys: tuple[BaseKey, ...]
+    is_pose: bool = False  # whether it is the value at a frame, as part of a pose
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

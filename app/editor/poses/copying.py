@@ -146,7 +146,7 @@ def _copied_transforms(
             if layer.id in chosen and has_keys:
                 channel: Channel[Any] = Channel(kind, layer.id)
                 key = kind.key(frame, value_at(document, channel, frame))
-                copied.append(CopiedChannel(layer, channel, (key,)))
+                copied.append(CopiedChannel(layer, channel, (key,), is_pose=True))
     return copied
 
 

@@ -72,7 +72,8 @@ def paste_keys(
     for channel, keys in pasted.items():
         moved = [key.retimed(key.frame + by, 1.0) for key in keys]
         start = project.document.frames.first
-        if channel.kind is TRANSFORM and moved[0].frame > start:
+        is_pose = any(each.is_pose for each in session.clipboard.channels)
+        if is_pose and channel.kind is TRANSFORM and moved[0].frame > start:
             # Before its first key the layer stays as it was.
             moved = [
                 *(

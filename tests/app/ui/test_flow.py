@@ -10,10 +10,11 @@ from app.document.keyframe import Target
 from app.document.settings import ExportSettings, Meshing
 from app.editor.action import do
 from app.editor.actions import editing, playback, viewing
-from app.editor.actions.posing.handles import add_handle, remove_handles, toggle_anchor_at_handle
+from app.editor.actions.posing.handles import add_handle, remove_handles
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
 from app.editor.actions.project_files import exporting, saving
+from app.editor.layering.anchors import toggle_anchor_at_handle
 from app.render.view import View
 from app.storage.assets import sample_images
 from app.ui.viewport import marks

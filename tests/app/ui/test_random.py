@@ -64,7 +64,6 @@ from app.editor.actions.posing.handles import (
     add_handle,
     mirror_handles,
     suggest_handles,
-    toggle_anchor_at_handle,
 )
 from app.editor.actions.posing.pose_drag import (
     free_rotation,
@@ -75,6 +74,7 @@ from app.editor.actions.posing.pose_drag import (
 from app.editor.actions.project_files import saving
 from app.editor.actions.timing import channel_keys, keys, springs, timeline_drag, tracks
 from app.editor.actions.updates import frame_update
+from app.editor.layering.anchors import toggle_anchor_at_handle
 from app.editor.layering.layer_list import (
     duplicate_layer,
     rename_layer,
