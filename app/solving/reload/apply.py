@@ -15,11 +15,10 @@ from app.solving.reload.file_settings import (
     with_new_origins,
     with_reloaded_layers,
 )
-from app.solving.reload.joints import with_moved_joints
 from app.solving.reload.pictures import PlacedMask, move_cut_out
 from app.solving.reload.plan import Change, LayerChange, ReloadPlan
 from app.solving.reload.replace_picture import distance_notices, start_picture_replacement
-from app.solving.reload.shifting import shift_layer, shift_scene
+from app.solving.reload.shifting import shift_layer, shift_scene, with_moved_joints
 from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.storage import (
     ImportedLayer,

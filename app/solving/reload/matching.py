@@ -43,17 +43,21 @@ def _by_number(
     numbers = [Counter(each.number for each in layers) for layers in (before, now)]
     paths = [{each.path for each in layers} for layers in (before, now)]
     present = {each.number: index for index, each in enumerate(now)}
-    for index, layer in enumerate(before):
-        number = layer.number
-        if not number or any(count[number] != 1 for count in numbers):
-            continue
-        other = now[present[number]]
-        # Another name and other pixels mean another layer, if one of the names still exists.
-        is_renamed = layer.name != other.name
+    pairs = [
+        (index, present[layer.number])
+        for index, layer in enumerate(before)
+        if layer.number and all(count[layer.number] == 1 for count in numbers)
+    ]
+
+    def is_likely(pair: tuple[int, int]) -> bool:
+        """Another name and other pixels mean another layer, if one of the names still exists."""
+        layer, other = before[pair[0]], now[pair[1]]
         is_reused = layer.path in paths[1] or other.path in paths[0]
-        if is_renamed and is_reused and not has_same_pixels(index, present[number]):
-            continue
-        yield index, present[number]
+        return layer.name == other.name or not is_reused or has_same_pixels(*pair)
+
+    likely = [pair for pair in pairs if is_likely(pair)]
+    # If most ids are those of the same layers, all are.
+    yield from pairs if 2 * len(likely) > len(pairs) else likely
 
 
 def _path(layer: FileLayer) -> Hashable:

@@ -1,18 +1,17 @@
 """What a changed file of a drawing changes in a document, before anything is changed."""
 
-from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 
 from app.document import Document, DrawingFile, FileLayer, Layer, LayerOrigin
 from app.errors import LissomError
 from app.solving.reload.alignment import PlacedPicture
+from app.solving.reload.canvas import find_canvas
 from app.solving.reload.file_groups import FileGroups
 from app.solving.reload.margin import has_margin_of
 from app.solving.reload.matching import match_layers
 from app.solving.reload.pictures import PictureChange, compare_pictures, picture_digest
-from app.solving.reload.replace_picture import find_new_corner
 from app.storage import ImportedLayer, LayeredPicture, Picture, run_parallel
 from app.texts import N_, _
 
@@ -170,7 +169,7 @@ def plan_reload(
         raise LissomError(_(NO_MATCH).format(name=changed.file_name))
     missing = [index for index in range(len(drawing.layers)) if index not in matches]
     pairs = [(shown[index][0], other) for index, other in matches.items() if index in shown]
-    corner, scene_shift = _canvas(document, drawing, changed, pictures, pairs)
+    corner, scene_shift = find_canvas(document, drawing, changed, pictures, pairs)
     if only is not None:
         scene_shift = 0j
     gone = tuple(replace(drawing.layers[index], is_missing=True) for index in missing)
@@ -219,42 +218,6 @@ def plan_reload(
     )
 
 
-def _canvas(
-    document: Document,
-    drawing: DrawingFile,
-    changed: LayeredPicture,
-    pictures: Mapping[int, Picture],
-    pairs: Sequence[tuple[Layer, int]],
-) -> tuple[complex, complex]:
-    """Return the corner of the changed file's canvas on the document's, and the scene's shift.
-
-    If the canvas has another size, its place is that at which most unchanged layers stay where they
-    are, or else its upper left corner stays. The scene moves if the file's canvas is its own.
-    """
-    if drawing.size == changed.size:
-        return drawing.corner, 0j
-    corner = drawing.corner + 1j * (drawing.size[1] - changed.size[1])
-    if len(drawing.layers) == len(changed.layers) == 1:
-        (layer, _index), *_copies = pairs
-        picture = changed.layers[0].picture
-        corner = find_new_corner(layer, picture, drawing.size, pictures[layer.id].rgba)
-    else:
-        votes: Counter[complex] = Counter()
-        for layer, index in pairs:
-            imported = changed.layers[index]
-            change = compare_pictures(
-                PlacedPicture(pictures[layer.id].rgba, layer.corner),
-                PlacedPicture(imported.picture.rgba, imported.corner),
-            )
-            if not change.is_redrawn:
-                votes[-change.shift] += 1
-        if votes:
-            corner = votes.most_common(1)[0][0]
-    if drawing.size != document.canvas or drawing.corner:
-        return corner, 0j
-    return 0j, -corner
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Comparison:
     """Compares layers with a changed file, whose canvas has this corner after the scene's shift."""
@@ -274,9 +237,9 @@ class _Comparison:
         corner = imported.corner + self.corner
         old = PlacedPicture(self.pictures[layer.id].rgba, layer.corner + self.scene_shift)
         new = PlacedPicture(imported.picture.rgba, corner)
-        # A margin that was added here is no change in the file.
-        is_extended = has_margin_of(old, new)
-        change = UNCHANGED if is_extended else compare_pictures(old, new)
+        change = compare_pictures(old, new)
+        if change.is_redrawn and has_margin_of(old, new):
+            change = UNCHANGED  # the margin was added here
         kinds = {
             (False, False): Change.SAME,
             (False, True): Change.MOVED,

@@ -1,9 +1,14 @@
 """Layers that move on the canvas as a whole: artwork, handles and poses by the same vector."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
-from app.document import IK_TARGET, Document, Layer, Pose
+import numpy as np
+
+from app.document import IK_TARGET, Attachment, Document, Layer, Pose
 from engine.maps import HarmonicMap
+
+NOWHERE: complex = 0j
 
 
 def shift_layer(layer: Layer, by: complex) -> Layer:
@@ -68,3 +73,34 @@ def shift_scene(document: Document, by: complex) -> Document:
     )
     drawings = tuple(replace(drawing, corner=drawing.corner + by) for drawing in document.drawings)
     return replace(document, layers=layers, camera=camera, drawings=drawings)
+
+
+def with_moved_joints(
+    layer: Layer, shifts: Mapping[int, complex], layers: Mapping[int, Layer]
+) -> Layer:
+    """Return a layer whose joints follow the shifts of the layer and of its parents.
+
+    A layer that moved on its parent takes the joint along, if the joint is then still on the
+    parent's shape; otherwise the joint keeps its place on the parent, with an offset.
+
+    Parameters
+    ----------
+    shifts : mapping of int to complex
+        Shifts of the artwork by layer id.
+    layers : mapping of int to Layer
+        The layers after the reload, by id.
+    """
+    own = shifts.get(layer.id, NOWHERE)
+
+    def moved(joint: Attachment) -> Attachment:
+        by = NOWHERE if joint.parent is None else shifts.get(joint.parent, NOWHERE)
+        if joint.parent is None or (not own and not by):
+            return joint
+        beside = joint.parent_point + own
+        parent = layers.get(joint.parent)
+        if own == by or (parent is not None and parent.covers(np.array([beside])).all()):
+            return replace(joint, parent_point=beside)
+        return replace(joint, parent_point=joint.parent_point + by, offset=joint.offset + own - by)
+
+    joints = tuple(map(moved, layer.attachments))
+    return layer if joints == layer.attachments else replace(layer, attachments=joints)

@@ -300,6 +300,17 @@ def test_another_drawing_is_refused_and_a_layer_without_a_shape_stays(rigged, tm
     assert "leg: kept as it was" in reloading.all_notices[0]
 
 
+def test_a_scaled_drawing_is_refused(rigged, tmp_path):
+    path = tmp_path / "man.ora"
+    twice = [
+        [name, picture.resize((2 * picture.width, 2 * picture.height)), 2 * left, 2 * top, *rest]
+        for name, picture, left, top, *rest in layers()
+    ]
+    write(path, twice, (2 * SIZE[0], 2 * SIZE[1]))
+    with pytest.raises(LissomError, match=r"scaled to 200%.*300 × 260"):
+        planned(rigged, path)
+
+
 def test_the_table_has_a_line_for_each_layer(rigged, tmp_path):
     stack = layers()
     stack[3][2] = 84
@@ -346,6 +357,11 @@ def test_layers_match_by_id_then_path_then_name_then_pixels():
     # Another program numbers layers anew: names count.
     now = file_layers(("b", 1), ("a", 2))
     assert match_layers(before[:2], now, never) == {0: 1, 1: 0}
+    # Most ids are right, so that a redrawn layer may leave its name to another one.
+    three = file_layers(("a", 1), ("leg", 2), ("leg", 3))
+    now = file_layers(("leg", 3), ("a", 1), ("left leg", 2))
+    assert match_layers(three, now, never) == {0: 1, 1: 2, 2: 0}
+    now = file_layers(("b", 1), ("a", 2))
     # Names that were swapped on the same pixels are new names.
     assert match_layers(before[:2], now, lambda one, other: one == other) == {0: 0, 1: 1}
     # Of three layers of one name, one was deleted: only equal pixels tell which.
