@@ -138,7 +138,7 @@ class Deformer(ConstrainedShape):
         round.
         """
         self._require_own(targets)
-        if len(targets.positions) == 0 and self.allows(state):
+        if len(targets.positions) == 0 and targets.aims is None and self.allows(state):
             return replace(state, limits=self.bounds, status=Status.FREE, targets=targets)
         if not self._is_same_request(state, targets):
             if state.search or state.outcome or state.starting_points:

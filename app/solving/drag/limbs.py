@@ -15,7 +15,7 @@ from engine.deform import Aim, Armature, Hinge, Shaft
 from engine.maps import Boundary, HarmonicMap
 
 # κ L² of each point of the body.
-BODY_STIFFNESS = 1e2
+BODY_STIFFNESS = 3e2
 # Largest force, per L, with which joints are pulled to the places of kinematics.
 JOINT_FORCE = 50.0
 # The same of dragged ends, which kinematics keeps within reach. An arm that has to bend inside a

@@ -41,6 +41,8 @@ from engine.maps import Boundary, Certificate, HarmonicMap
 LEEWAY = 0.02
 # Weight of a joint; handles usually have weight 1.
 PIN = 10.0
+# Factor of the weights of ends without a rigid part: bones do not give way.
+END_FIRMNESS = 5.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -61,7 +63,7 @@ class Rig:
     def of(
         cls,
         layer: Layer,
-        earlier: "Rig | None" = None,
+        earlier: Self | None = None,
         pulled: Collection[int] = (),
     ) -> Self:
         """Return the rig of a layer; unchanged parts come from an earlier rig.
@@ -69,7 +71,9 @@ class Rig:
         `pulled` are the ids of dragged handles. They are included even with springs.
         """
         domain, pins = layer.domain, _pins(layer)
-        carried = layer.sprung_handles.difference(pulled)
+        free = layer.sprung_handles.difference(pulled)
+        if earlier is not None and earlier.layer is layer and earlier.free == free:
+            return earlier
         if earlier is not None and earlier.layer.domain is domain:
             boundary = earlier.deformer.boundary
             is_same = stiffness_source(earlier.layer) == stiffness_source(layer)
@@ -77,15 +81,15 @@ class Rig:
             boundary, is_same = Boundary.sample(domain), False
         if not is_same:
             boundary, earlier = with_stiffness(layer, boundary), None
-        limbs = earlier.limbs if earlier is not None else find_limbs(layer)
-        # Joints and rigid ends are places of bones, which do not hold the drawing there.
-        free = carried
-        carried |= layer.bone_joints | limbs.rigid_ends if limbs is not None else frozenset()
+        limbs, carried = find_limbs(layer), free
+        if limbs is not None:
+            # Joints and rigid ends are places of bones, which do not hold the drawing there.
+            carried |= layer.bone_joints | limbs.rigid_ends
         held = tuple(handle for handle in layer.handles if handle.id not in carried)
         if earlier and earlier.handles == held and earlier.pins == pins:
             handles = earlier.deformer.handles
         else:
-            handles = _place_handles(boundary, held, pins)
+            handles = _place_handles(boundary, held, pins, limbs)
         # Stiff parts deform less in new poses, and joints of bones more.
         bounds = limits_along(layer, boundary)
         deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
@@ -98,7 +102,8 @@ class Rig:
 
     def place_handles(self, armature: Armature | None = None) -> Handles:
         """Return the rig's handles with an armature."""
-        return _place_handles(self.deformer.boundary, self.handles, self.pins, armature)
+        boundary = self.deformer.boundary
+        return _place_handles(boundary, self.handles, self.pins, self.limbs, armature)
 
     def posed_at(
         self, shape: HarmonicMap, start: Mapping[int, Target], deformer: Deformer | None = None
@@ -176,8 +181,7 @@ class PosedRig:
     @property
     def ends(self) -> frozenset[int]:
         """The ids of the ends of all limbs, which are dragged with a force of their own."""
-        limbs = self.rig.limbs.limbs if self.rig.limbs is not None else ()
-        return frozenset(limb.chain.end for limb in limbs)
+        return self.rig.limbs.ends if self.rig.limbs is not None else frozenset()
 
     def build_targets(
         self, followed: LimbTargets, pins: tuple[Target, ...], hands: Sequence[BoundedPull] = ()
@@ -261,10 +265,15 @@ def _place_handles(
     boundary: Boundary,
     held: Sequence[Handle],
     pins: Sequence[complex],
+    limbs: Limbs | None,
     armature: Armature | None = None,
 ) -> Handles:
+    ends = limbs.ends if limbs is not None else ()
     places = [*(handle.position for handle in held), *pins]
-    pulls = [*(handle.effective_weight for handle in held), *(PIN for _ in pins)]
+    weights = [
+        handle.effective_weight * (END_FIRMNESS if handle.id in ends else 1.0) for handle in held
+    ]
+    pulls = [*weights, *(PIN for _ in pins)]
     return Handles.place(boundary, np.array(places, dtype=np.complex128), pulls, armature)
 
 

@@ -31,7 +31,7 @@ from engine.deform.model.unknowns import by_unknowns
 from engine.maps import Boundary
 
 # κ of hinges and of aims, times L².
-HINGE_STIFFNESS = 3e4
+HINGE_STIFFNESS = 3e5
 AIM_STIFFNESS = STIFFNESS
 TINY = 1e-300
 

@@ -10,7 +10,7 @@ from engine.arrays import Complexes, Floats, Indices, readonly
 from engine.errors import EngineError
 
 # κ L² of a shaft.
-SHAFT_STIFFNESS = 3e3
+SHAFT_STIFFNESS = 3e4
 # A shaft of fewer points has no direction.
 FEWEST_POINTS = 2
 

@@ -20,12 +20,16 @@ from engine.domain.material.limb import (
 )
 from engine.geometry import as_xy, shapely_region
 
-POINTS = 3  # on the axis of a bone
-BODY_POINTS = 40
+POINTS = 5  # on the axis of a bone
+BODY_POINTS = 200
 # A shaft keeps clear of a joint by this many half widths, and by at most this part of the bone.
 CLEAR, MOST_CLEAR = 0.9, 0.4
 # The drawing is a limb where it is narrower than this part of the bone's length.
 NARROW = 0.95
+# The body ends where the limb is first at most so many times as wide as where it is narrowest.
+AS_NARROW = 1.3
+# From this part of the first bone on, points within so many half widths belong to the limb.
+THIGH, BESIDE_THIGH = 0.2, 1.7
 # Half widths count as at most this part of the length: a trunk is no limb.
 WIDEST = 0.35
 BEYOND_JOINT = 2.5  # half widths; one less is fully part of the joint
@@ -66,10 +70,13 @@ def measure_limb(loops: Sequence[Complexes], start: complex, end: complex) -> Li
     widths = np.minimum(measure_half_widths(loops, start, end), WIDEST * length)
     shares = np.linspace(INSET, 1 - INSET, STATIONS)
     left, right = measure_distances(loops, start, end, shares)
-    inside = shares[left + right < NARROW * length]
+    across = left + right
+    is_inside = across < NARROW * length
+    inside = shares[is_inside]
     found = (float(inside[0]), float(inside[-1])) if len(inside) >= FEWEST_STATIONS else (0.4, 0.6)
-    # Stations in the limb come first: a cut across the trunk parts more than the limb.
-    return LimbShape(widths, found, np.concatenate([inside, shares]))
+    # Narrow stations in the limb come first: a cut across the trunk parts more than the limb.
+    narrow = inside[across[is_inside] < AS_NARROW * across[is_inside].min(initial=np.inf)]
+    return LimbShape(widths, found, np.concatenate([narrow, inside, shares]))
 
 
 def shaft_points(limb: LimbShape, start: complex, end: complex, *, is_last: bool) -> Complexes:
@@ -113,7 +120,8 @@ def body_points(
         way = limb.joint - limb.root
         along = ((candidates - limb.root) * np.conj(way)).real / abs(way) ** 2
         away = np.abs(candidates - limb.root - np.clip(along, 0, 1) * way)
-        is_body &= away > limb.shape.half_widths.max()
+        beside = np.where(along > THIGH, BESIDE_THIGH, 1.0)
+        is_body &= away > beside * limb.shape.half_widths.max()
         parts = _cut_limb(loops, whole, limb)
         if parts is not None:
             own = _nearest_part(parts, limb.end)

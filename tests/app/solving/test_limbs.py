@@ -145,9 +145,9 @@ def test_an_arm_of_three_bones_reaches_its_goal():
 
 
 def test_one_bone_turns_around_its_root():
-    layer, _ = posed(
-        {"frame": 0}, {"frame": 9, "targets": {"hand": [360, 345]}}, bones=[["shoulder", "hand"]]
-    )
+    handles = {name: place for name, place in HANDLES.items() if name != "elbow"}
+    key = {"frame": 9, "targets": {"hand": [360, 345]}}
+    layer, _ = posed({"frame": 0}, key, bones=[["shoulder", "hand"]], handles=handles)
     at = places(layer)
     assert abs(at["hand"] - at["shoulder"]) == pytest.approx(140, abs=2.5)
     assert np.angle(at["hand"] - 225 - 300j) == pytest.approx(np.angle(135 + 45j), abs=0.03)
@@ -236,7 +236,7 @@ def test_limbs_keep_their_lengths_between_keys():
     worst = []
     for each in (clip, free):
         places = Animation(each, points=points).base.frame(12.0).positions
-        spans = abs(places[2::3] - places[::3]) / abs(points[2::3] - points[::3])
+        spans = abs(places[4::5] - places[::5]) / abs(points[4::5] - points[::5])
         worst.append(np.abs(spans - 1).max())
     assert worst[0] < 0.02
     assert worst[0] < 0.5 * worst[1]

@@ -10,6 +10,7 @@ from app.document.queries.memo import memoized_on
 from app.document.rig.chains import Bone
 from app.document.rig.stiffness import combined_stiffness, default_as_none
 from engine.arrays import Complexes, Floats, as_points
+from engine.domain import MeshedDomain
 from engine.domain.material.brush import brush_weights
 from engine.domain.material.limb import limb_weights
 from engine.errors import EngineError
@@ -34,12 +35,17 @@ def with_stiffness(layer: Layer, boundary: Boundary) -> Boundary:
 @memoized_on
 def stiff_outline(layer: Layer) -> StiffOutline:
     """Return the stiffness at the vertices of a layer's loops and between them."""
-    share = np.arange(A_SIDE) / A_SIDE
-    points = [
-        (loop[:, None] + (np.roll(loop, -1) - loop)[:, None] * share).ravel()
-        for loop in layer.domain.loops
-    ]
+    points = outline_points(layer.domain)
     return StiffOutline(np.concatenate(points), _stiffness_at(layer, points))
+
+
+def outline_points(domain: MeshedDomain) -> list[Complexes]:
+    """Return the vertices of each loop, and points between them."""
+    share = np.arange(A_SIDE) / A_SIDE
+    return [
+        (loop[:, None] + (np.roll(loop, -1) - loop)[:, None] * share).ravel()
+        for loop in domain.loops
+    ]
 
 
 @memoized_on

@@ -10,12 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document.layer import Layer
-from app.document.queries.material.boundary_stiffness import stiff_outline
-from app.document.queries.material.local_limits import limb_shapes
+from app.document.queries.material.boundary_stiffness import outline_points
+from app.document.queries.material.local_limits import bones_and_handles, limb_shapes_in
 from app.document.queries.memo import memoized_on
-from app.document.rig.chains import Chain, find_chains
+from app.document.rig.chains import Bone, Chain, find_chains
 from engine.arrays import Complexes
 from engine.deform import Armature, Hinge, Shaft
+from engine.domain import MeshedDomain
 from engine.domain.material.shafts import LimbCut, LimbShape, body_points, shaft_points
 from engine.geometry import Similarity
 from engine.maps import Boundary
@@ -93,6 +94,11 @@ class Limbs:
         return hinges
 
     @cached_property
+    def ends(self) -> frozenset[int]:
+        """The ids of the ends of all chains."""
+        return frozenset(limb.chain.end for limb in self.limbs)
+
+    @cached_property
     def rigid_ends(self) -> frozenset[int]:
         """The ids of the ends with a rigid part, which a pose holds in place of the drawing."""
         return frozenset(limb.chain.end for limb in self.limbs if limb.end_shaft is not None)
@@ -132,26 +138,30 @@ def _carry(motion: Similarity, place: complex) -> complex:
     return motion.factor * place + motion.shift
 
 
-@memoized_on
 def find_limbs(layer: Layer) -> Limbs | None:
     """Return the limbs of a layer; None without bones."""
-    shapes = limb_shapes(layer)
+    return _limbs_in(layer.domain, *bones_and_handles(layer)) if layer.bones else None
+
+
+@memoized_on
+def _limbs_in(
+    domain: MeshedDomain, bones: tuple[Bone, ...], handles: tuple[tuple[int, complex], ...]
+) -> Limbs | None:
+    shapes, at = limb_shapes_in(domain, bones, handles), dict(handles)
     by_ends = {bone.ends: shape for bone, shape in shapes.items()}
     limbs, count, last = list[LimbChain](), 0, dict[int, int]()
     for chain in find_chains(shapes):
-        places = [layer.handle(identity).position for identity in chain.handles]
-        links = zip(chain.handles, chain.handles[1:], strict=False)
         limbs.append(
             LimbChain(
                 chain=chain,
-                places=tuple(places),
-                shapes=tuple(by_ends[ends] for ends in links),
+                places=tuple(at[identity] for identity in chain.handles),
+                shapes=tuple(by_ends[ends] for ends in pairwise(chain.handles)),
                 first_shaft=count,
                 end_shaft=None,
                 parent=last.get(chain.root),
             )
         )
-        count += len(places) - 1
+        count += len(chain.handles) - 1
         last[chain.end] = count - 1
     if not limbs:
         return None
@@ -164,5 +174,5 @@ def find_limbs(layer: Layer) -> Limbs | None:
         for limb in limbs
         if limb.parent is None
     ]
-    body = body_points(layer.domain.loops, stiff_outline(layer).points, cuts)
+    body = body_points(domain.loops, np.concatenate(outline_points(domain)), cuts)
     return Limbs(limbs=tuple(limbs), body=body)

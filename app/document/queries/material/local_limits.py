@@ -10,6 +10,7 @@ from app.document.queries.material.boundary_stiffness import stiff_outline
 from app.document.queries.memo import memoized_on
 from app.document.rig.chains import Bone
 from engine.arrays import Complexes, Floats
+from engine.domain import MeshedDomain
 from engine.domain.material.end_parts import find_end_part
 from engine.domain.material.shafts import LimbShape, joint_share, measure_limb
 from engine.errors import EngineError
@@ -17,15 +18,27 @@ from engine.geometry import next_on_loop
 from engine.maps import Boundary, LocalBounds
 
 
-@memoized_on
 def limb_shapes(layer: Layer) -> Mapping[Bone, LimbShape]:
     """Return the drawing around each bone that keeps its length.
 
     A bone that leaves the drawing, as after a change of the cut-out, is left out.
     """
-    places, found = {handle.id: handle.position for handle in layer.handles}, {}
-    loops, joints = layer.domain.loops, layer.bone_joints
-    for bone in layer.bones:
+    return limb_shapes_in(layer.domain, *bones_and_handles(layer))
+
+
+def bones_and_handles(layer: Layer) -> tuple[tuple[Bone, ...], tuple[tuple[int, complex], ...]]:
+    """Return the bones of a layer, and the ids and places of its handles: what limbs depend on."""
+    return layer.bones, tuple((handle.id, handle.position) for handle in layer.handles)
+
+
+@memoized_on
+def limb_shapes_in(
+    domain: MeshedDomain, bones: tuple[Bone, ...], handles: tuple[tuple[int, complex], ...]
+) -> Mapping[Bone, LimbShape]:
+    """Return the shapes of `limb_shapes` for bones in a domain."""
+    places, found = dict(handles), {}
+    loops, joints = domain.loops, {bone.ends[0] for bone in bones if bone.is_limb}
+    for bone in bones:
         if bone.is_limb:
             start, end = (places[i] for i in bone.ends)
             try:
