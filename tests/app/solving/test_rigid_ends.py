@@ -119,5 +119,5 @@ def test_a_hand_stays_where_it_is_while_its_shoulder_is_carried():
     at = placed(layer)
     assert abs(at.places[6] - 345 - 300j) < 1 * THOUSANDTH
     assert at.angles[6] == pytest.approx(0.0, abs=5e-3)
-    palm = np.array([360, 385, 385, 360]) + 1j * np.array([280, 280, 320, 320])
+    palm = np.array([370, 385, 385, 370]) + 1j * np.array([280, 280, 320, 320])
     assert np.abs(frames(document, palm, [0, 6, 12]) - palm).max() < 0.8 * THOUSANDTH
