@@ -56,3 +56,32 @@ TROT = Motion(
         )
     },
 )
+
+# Hind feet, then front feet, then all in the air, gathered below the body.
+GALLOP = Motion(
+    name="gallop",
+    label=_("Gallop"),
+    hint=_("Hind feet, then front feet, then a moment in the air"),
+    seconds=2 / 3,
+    phases=EIGHTHS,
+    templates={
+        "four-legs": LimbMotion(
+            gait=Gait(
+                stance=0.25,
+                stride=1.8,
+                lift=0.18,
+                landings=(("foot.L", 0.0), ("foot.R", 0.125), ("hand.L", 0.375), ("hand.R", 0.5)),
+                gathered=0.3,
+                roll=30,
+            ),
+            rise=even_curve(-0.02, -0.03, 0.0, 0.02, 0.0, -0.01, 0.04, 0.03),
+            turns={
+                "neck": even_curve(3, 1, -2, -5, -4, -1, 2, 4),
+                "head": even_curve(-2, 0, 2, 4, 3, 0, -2, -3),
+                "tail": even_curve(4, 8, 10, 6, 0, -6, -4, 0),
+                "chest": even_curve(3, 2, 0, -3, -3, -1, 1, 3),
+            },
+            needed=FEET,
+        )
+    },
+)

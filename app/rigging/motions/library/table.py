@@ -2,8 +2,9 @@
 
 from app.rigging.motions.library.bipeds import JUMP, NOD, RUN, WALK, WAVE
 from app.rigging.motions.library.chains import SLITHER, WAG
-from app.rigging.motions.library.four_legs import TROT
-from app.rigging.motions.library.whole_body import BREATHE, HOP, SWAY
+from app.rigging.motions.library.four_legs import GALLOP, TROT
+from app.rigging.motions.library.gestures import BREATHE, FLY, LOOK, TALK
+from app.rigging.motions.library.whole_body import HOP, SWAY
 from app.rigging.motions.motion import Motion
 from engine.errors import EngineError
 
@@ -14,6 +15,10 @@ MOTIONS = {
     "nod": NOD,
     "jump": JUMP,
     "trot": TROT,
+    "gallop": GALLOP,
+    "talk": TALK,
+    "look": LOOK,
+    "fly": FLY,
     "slither": SLITHER,
     "wag": WAG,
     "breathe": BREATHE,

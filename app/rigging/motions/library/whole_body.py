@@ -6,18 +6,9 @@ from app.rigging.motions.motion import Motion
 from app.rigging.motions.squash_stretch import SquashStretch
 from app.texts import _
 
-BREATHE = Motion(
-    name="breathe",
-    label=_("Breathe"),
-    hint=_("The body swells and sinks, slowly"),
-    seconds=3.0,
-    phases=EIGHTHS,
-    templates={
-        "anything": SquashStretch(
-            swell=even_curve(0.0, 0.04, 0.08, 0.065, 0.03, 0.005),
-            stretch=even_curve(0.0, 0.01, 0.02, 0.018, 0.008, 0.0),
-        )
-    },
+BREATHE_WHOLE = SquashStretch(
+    swell=even_curve(0.0, 0.04, 0.08, 0.065, 0.03, 0.005),
+    stretch=even_curve(0.0, 0.01, 0.02, 0.018, 0.008, 0.0),
 )
 
 SWAY = Motion(
