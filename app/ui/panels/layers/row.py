@@ -13,6 +13,7 @@ from app.editor.layering.layer_list import (
 )
 from app.editor.layering.layer_selection import toggle_tree_row
 from app.editor.layering.switches import key_switch
+from app.errors import display_name
 from app.render import Thumbnail
 from app.texts import _
 from app.ui.style.drawing import draw_centred_text, show_picture
@@ -41,6 +42,10 @@ def draw_row_tooltip(document: Document, row: TreeRow) -> None:
         return
     imgui.text_unformatted(row.name)
     if row.layer is not None:
+        there, drawing = document.file_layer_of(row.layer), document.drawing_of(row.layer)
+        if there is not None and there.is_missing and drawing is not None:
+            text = _("No longer in {name}").format(name=drawing.name)
+            imgui.text_unformatted(display_name(text))
         for joint in row.layer.attachments:
             name = _("nothing") if joint.parent is None else document.layer(joint.parent).name
             text = (
