@@ -127,7 +127,7 @@ def _contents(toast: Toast, look: Look) -> list[Action]:
         if toast.details:
             imgui.same_line()
         if imgui.small_button(toast.label):
-            actions.append(toast.action)
+            actions += [toast.action, do(dismiss_toast, toast)]
     imgui.end_group()
     imgui.set_cursor_pos(ImVec2(imgui.get_window_width() - 2.1 * look.em, 0.35 * look.em))
     imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))

@@ -275,7 +275,7 @@ class WindowFrame:
         session, revision = self.session, frame_update.session_revision(self.session)
         is_due = frame_update.is_due_in_time(session) or autosaving.is_autosave_due(session)
         # A failed step is tried again.
-        is_due = is_due or any(step.failure is not None for step in self._update_steps)
+        is_due = is_due or bool([step for step in self._update_steps if step.failure is not None])
         if revision == self._revision and not is_due:
             return
         # Changes that the steps make are seen in the next frame.

@@ -198,6 +198,8 @@ def test_greyed_buttons_of_panels_show_their_reasons(window, loose, monkeypatch)
     for tab in ("Layers", "Shape"):
         window.show_tab(tab)
         window.frames(3)
+    window.run(lambda robot: robot.item_open("//Shape/**/###more of shape"))
+    window.frames(3)
     assert loose is window.session.project
     assert set(shown) >= {
         *("A scene needs at least one layer.", "The layer is in front of all others already."),

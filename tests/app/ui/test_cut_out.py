@@ -50,6 +50,8 @@ def rest(window):
 
 def stroke(window, *places):
     """Draw a stroke by the pointer."""
+    window.session.notices.toasts = []  # they are above the drawing
+    window.frames()
 
     def draw(robot):
         robot.mouse_move_to_pos(window.point(places[0]))
@@ -147,6 +149,8 @@ def test_a_step_between_two_strokes_gets_a_mesh_of_its_own(window, drawing):
 def test_alt_and_x_swap_the_brush_and_brackets_change_its_size(window, drawing):
     session = window.session
     keys = window.Key
+
+    session.notices.toasts = []  # they are above the drawing
 
     def play(robot):
         robot.key_press(keys.x)
@@ -391,6 +395,7 @@ def test_paper_that_is_left_inside_is_tinted(window):
     places = (MIDDLE, POCKET)
     assert [tuple(pixel(window, place)) for place in places] == [(255, 255, 255)] * 2
     window.act(cut_out_editing.toggle_cut_tool, "holes")
+    window.session.notices.toasts = []  # they are above the drawing
     elsewhere = MIDDLE + 20j  # of the mark in the middle
     red, _, blue = pixel(window, elsewhere)
     assert blue > red + 60
@@ -481,7 +486,8 @@ def test_a_line_of_the_knife_is_saved_taken_away_and_refused(window, boots, tmp_
     assert len(boots.layer.cut_out.cut_lines) == 1
     stroke(window, 3 + 60j, 117 + 62j)
     rest(window)
-    assert any(re.search(says(CUTS_OFF), toast.text) for toast in window.session.notices.toasts)
+    told = [toast.text for toast in window.session.notices.toasts]
+    assert any(re.search(says(CUTS_OFF), text) for text in told), told
     assert boots.layer.is_stale
     window.act(editing.undo)
     rest(window)

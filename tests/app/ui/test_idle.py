@@ -24,7 +24,7 @@ from app.ui.viewport.canvas import Canvas
 from app.ui.window.window_frame import WindowFrame
 
 OWN = str(Path(__file__).parents[3] / "app")
-MOST_CALLS = 50
+MOST_CALLS = 56
 # Panels, and the picture of the drawing.
 DRAWING = {each.__code__ for each in (WindowFrame._draw_panel, WindowFrame._ask, Canvas.draw)}
 
