@@ -259,9 +259,10 @@ def test_samples_have_stories_and_move_under_the_pointer(window):
     assert not thumbnails.animated_files, "nothing moves before it is pointed at"
 
     def point(robot):
+        # The way there may cross other samples.
         robot.mouse_move("//Welcome/**/sample Ring")
         for _ in range(3):
             robot.yield_()
 
     window.run(point)
-    assert [path.stem for path in thumbnails.animated_files] == ["ring"]
+    assert "ring" in {path.stem for path in thumbnails.animated_files}
