@@ -311,7 +311,13 @@ class Walk:
         for _ in range(MOST_FRAMES):
             if not self.window.program.shell.queue.waiting:
                 return
-            self.workers.do_all()
+            # Not what else follows each step of the pose, unless that is all there is.
+            kinds = self.session.jobs.kinds
+            first = next((kind for kind in kinds if kind.lane == "hand"), None)
+            if first is None:
+                self.workers.do_all()
+            else:
+                self.workers.do(first)
             self.window.frames(1)
         raise AssertionError(f"actions wait:\n{unrest(self.session)}")
 

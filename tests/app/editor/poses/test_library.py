@@ -5,11 +5,12 @@ from animations import moving_document
 from invariants import check_pose
 from sessions import go, session_of, settle
 
-from app.document import pose_commands
+from app.document import pose_commands, scene_commands
 from app.document.commands import handle_commands
 from app.document.commands.layers import layer_commands
 from app.editor.actions import editing
 from app.editor.poses import library
+from app.editor.tools import tool_pointer
 from app.storage import Preferences
 
 
@@ -34,6 +35,15 @@ def test_an_in_between_is_kept_as_the_nearest_pose(session):
     check_pose(session.project.layer, between.pose)
     assert between.pose.certificate.is_certified
     assert session.project.layer.key_frames == {0, 6}
+
+
+def test_a_pose_is_kept_while_a_widget_is_pressed_whose_edits_have_ended(session):
+    document, tools = session.project.document, session.tools
+    tool_pointer.note_widget_in_use(session, 5, is_pressed=True)
+    editing.edit_document(session, scene_commands.set_loop(loop=not document.loop))
+    session.project.history.commit()
+    assert session.project.history.has_ended(tools.widget_gesture)
+    assert keep(session, 6).name
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.7])
