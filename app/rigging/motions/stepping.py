@@ -9,7 +9,7 @@ from app.rigging.motions.motion import Parameters
 from app.rigging.motions.steps import BodyLeg, Gait, find_leg, required_drop
 from app.rigging.motions.timing import EVEN, Timing
 
-GROUND = 0.15  # of a leg's length: feet drawn no higher than this above the lowest foot stand
+GROUND = 0.3  # of a leg's length: feet drawn no higher than this above the lowest foot stand
 # Of a leg's length: the hips come down at most this much for a long step, else the step becomes
 # shorter. Without the limit the body would crouch, with all legs bent.
 LOWERED, SHORTER = 0.08, 0.9
