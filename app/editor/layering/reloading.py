@@ -33,7 +33,7 @@ from app.texts import _
 
 READING = JobKind(_("Comparing the drawing"), _("The drawing was not reloaded"))
 RELOADING = JobKind(_("Reloading the drawing"), _("The drawing was not reloaded"))
-LOOKING = JobKind(_("Looking at the drawing's file"), _("The file was not read"), "keep")
+LOOKING = JobKind(_("Looking for changes of the file"), _("The file was not read"), "keep")
 CHANGED = _("The project changed meanwhile, so the drawing was not reloaded. Start again.")
 
 
