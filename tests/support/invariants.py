@@ -4,6 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from app.document import TRANSFORM, Transform, layer_value_at
 from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.queries.channel_values.channel_keys import frames_in
@@ -76,7 +77,15 @@ def check_joints(project: Project) -> None:
             if joint.inherits_rotation
             else 1.0
         )
-        gap = abs(anchor - at - factor * joint.offset)
+        away = joint.offset
+        if joint.applies_transform:
+            # A transform of the layer's own moves it off its joint, along the layer's axes.
+            frame = project.document.loop_frame(child.frame)
+            own = layer_value_at(project.document, layer, TRANSFORM, frame) or Transform()
+            at_rest = joint.inherits_rotation
+            held = np.exp(-1j * joint.rest_rotation) / joint.rest_scale if at_rest else 1.0
+            away += held * own.shift
+        gap = abs(anchor - at - factor * away)
         assert gap < OPEN * size, f"{layer.name} is {gap} from its joint {joint}: {child}, {parent}"
 
 
