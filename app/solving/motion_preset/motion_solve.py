@@ -262,6 +262,10 @@ def step_motion_solve(giving: MotionSolve) -> MotionSolve:
 def solve_key_pose(rig: Rig, begin: Pose, moment: JointKeyPose) -> Pose:
     """Return the pose for the joint targets, solved from another pose."""
     targets = {**begin.targets, **moment.targets}
+    for limb in rig.limbs.limbs if rig.limbs is not None else ():
+        # Knees follow their feet; a knee with a target of its own would carry a foot that stands.
+        for joint in limb.chain.handles[1:-1]:
+            targets[joint] = replace(begin.targets[joint], side=targets[joint].side)
     return DragSolver.begin(rig, begin).step_towards(targets, MOST_STEPS).make_pose(targets)
 
 

@@ -108,6 +108,21 @@ def test_planted_feet_keep_one_speed_and_shins_their_length(scenes):
     assert_allclose(np.abs(np.subtract(knees, feet)), rest, rtol=0.03)
 
 
+def test_feet_that_stand_stay_while_knees_bend_when_a_walk_travels(scenes):
+    order = MotionRequest(
+        motion="walk",
+        kind="biped-side",
+        joints={**JOINTS["biped-side"], "hip.L": 178 + 128j, "hip.R": 142 + 128j},
+        parameters=Parameters(speed=2.0, size=0.4, travel=True),
+    )
+    giving = start_motion_solve(scenes["biped-side"], 0, order)
+    while len(giving.poses) < 4:
+        giving = step_motion_solve(giving)
+    foot = giving.applied.joints["foot.L"]
+    wanted = giving.key_poses[0].targets[foot].position
+    assert_allclose([pose.targets[foot].position for pose in giving.poses], wanted, atol=1e-9)
+
+
 def test_edits_by_hand_stay_when_a_motion_is_applied_with_other_settings(wagging):
     layer = wagging.layers[0]
     (motion,) = layer.motions
