@@ -299,7 +299,7 @@ KNOWN = {
 BETWEEN = KNOWN | {"id": 2, "first": 8, "start": 8, "last": 10}
 UNKNOWN_MOTIONS = (
     (BETWEEN | {"motion": "nosuch"}, "There is no motion preset 'nosuch'"),
-    (BETWEEN | {"kind": "biped-side"}, "'breathe' is not a motion for 'biped-side'"),
+    (BETWEEN | {"kind": "snake"}, "'breathe' is not a motion for 'snake'"),
     (BETWEEN | {"motion": "wave", "kind": "biped-side"}, "has no joint 'top'"),
     (BETWEEN | {"joints": {"top": 7}}, "is at handle 7, which does not exist"),
     (BETWEEN | {"first": -1}, "A motion must run from a frame to a later frame"),
@@ -373,7 +373,7 @@ REFUSED = (
     ),
     (
         lambda c: c.update(switch_groups=[{"name": "{", "layers": [0, 0], "keys": []}]),
-        "A switch lists the layer 0 twice",
+        "A switch lists 0 twice",
     ),
     (
         lambda c: c["layers"][0].update(cycles=[{"first": -2, "last": 2, "until": None}]),

@@ -41,7 +41,7 @@ ALONE = (
         "Paste on selected handles",
         "Paste flipped on selected",
     ),
-    *("Delete", "Suggest handles", "Pin here", "Key this handle only", "Mirror"),
+    *("Delete", "Rig this", "Suggest handles", "Pin here", "Key this handle only", "Mirror"),
     *("First frame", "Play", "Insert key", "Your first animation"),
 )
 VIEWS = [name for name in ACTIONS if name not in {*EDITS, *ALONE}]

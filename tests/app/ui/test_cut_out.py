@@ -421,6 +421,15 @@ def test_the_canvas_suits_lines_whose_paper_was_removed(window):
     assert pixel(window, outside).max() < 80
 
 
+@pytest.fixture(autouse=True)
+def _without_settings(window):
+    """Close the settings, which would cover a part of the drawing, as if they were never opened."""
+    del window  # it must be there
+    bar = imgui.internal.find_window_by_name("###mode")
+    if bar is not None:
+        bar.state_storage.clear()
+
+
 @pytest.fixture
 def boots(window, tmp_path):
     """A block with a handle left and right of the middle of its lower half, and a key of each."""

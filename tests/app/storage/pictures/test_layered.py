@@ -14,8 +14,8 @@ from psd_tools.constants import BlendMode
 
 from app.document.layers.groups import Group
 from app.errors import LissomError
-from app.storage.pictures.layer_names import LONGEST_NAME, UniqueNames
-from app.storage.pictures.layered import GROUPS_DEEP, MOST_GROUPS, MOST_LAYERS
+from app.storage.pictures.layer_names import GROUPS_DEEP, LONGEST_NAME, MOST_GROUPS, UniqueNames
+from app.storage.pictures.layered import MOST_LAYERS
 from app.storage.pictures.openraster import DAMAGED_STACK, read_openraster
 from app.storage.pictures.photoshop import read_photoshop
 

@@ -31,7 +31,8 @@ from psd_tools import PSDImage
 
 from app.document.layers.groups import BLENDS, Group
 from app.errors import ImportLog, LissomError
-from app.storage.pictures.layered import GROUPS_DEEP, MOST_LAYERS
+from app.storage.pictures.layer_names import GROUPS_DEEP
+from app.storage.pictures.layered import MOST_LAYERS
 from app.storage.pictures.photoshop import (
     CLEAR_INDEX,
     DAMAGED,
