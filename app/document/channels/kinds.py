@@ -8,13 +8,31 @@ from typing import Any, Final
 from app.document.channels.key import KeyedProperty
 from app.document.channels.kind import ChannelKind, Quantity, ValueField
 from app.document.channels.tangent_mode import TangentMode
-from app.document.channels.values import MAX_SCALE, Camera, DrawOrder, IkTarget, Transform
-from app.document.checks import require
+from app.document.channels.values import (
+    MAX_SCALE,
+    MAX_ZOOM,
+    Camera,
+    DrawOrder,
+    IkTarget,
+    Transform,
+)
+from app.document.checks import MAX_COORDINATE, require
 from app.texts import N_
 
 # Keys closer than this count as equal: pixels, radians, logarithms of zoom, and opacity.
 SAME_PLACE, SAME_TURN, SAME_ZOOM, SAME_OPACITY = 0.01, 1e-4, 1e-5, 1e-4
 SAME_VALUE, LARGEST_VALUE = 1e-6, 1e6  # of sliders
+
+
+def _clipped(place: complex) -> complex:
+    """Return a point between keys within the limits of keys, which smooth motion may pass."""
+    x, y = (min(max(each, -MAX_COORDINATE), MAX_COORDINATE) for each in (place.real, place.imag))
+    return complex(x, y)
+
+
+def _grown(logarithm: float, most: float) -> float:
+    """Return a factor between keys within the limits of keys, from its logarithm."""
+    return min(max(exp(min(logarithm, log(most))), 1 / most), most)
 
 
 def require_opacity(opacity: float) -> None:
@@ -76,7 +94,7 @@ CAMERA: Final = ChannelKind[Camera](
         KeyedProperty(lambda key: log(key.value.zoom), SAME_ZOOM),
         KeyedProperty(lambda key: key.value.turn, SAME_TURN, period=tau),
     ),
-    join=lambda centre, zoom, turn: Camera(centre, exp(zoom), turn),
+    join=lambda centre, zoom, turn: Camera(_clipped(centre), _grown(zoom, MAX_ZOOM), turn),
 )
 TRANSFORM: Final = ChannelKind[Transform](
     name="transform",
@@ -93,9 +111,7 @@ TRANSFORM: Final = ChannelKind[Transform](
         KeyedProperty(lambda key: key.value.turn, SAME_TURN, period=tau),
         KeyedProperty(lambda key: log(key.value.scale), SAME_ZOOM),
     ),
-    join=lambda shift, turn, scale: Transform(
-        shift, turn, min(max(exp(scale), 1 / MAX_SCALE), MAX_SCALE)
-    ),
+    join=lambda shift, turn, scale: Transform(_clipped(shift), turn, _grown(scale, MAX_SCALE)),
     moves_layer=True,
 )
 IK_TARGET: Final = ChannelKind[IkTarget](
@@ -113,7 +129,7 @@ IK_TARGET: Final = ChannelKind[IkTarget](
         KeyedProperty(lambda key: key.value.turn, SAME_TURN, period=tau),
         KeyedProperty(lambda key: key.value.mix, SAME_OPACITY),
     ),
-    join=lambda place, turn, mix: IkTarget(place, turn, min(max(mix, 0.0), 1.0)),
+    join=lambda place, turn, mix: IkTarget(_clipped(place), turn, min(max(mix, 0.0), 1.0)),
     moves_layer=True,
 )
 OPACITY: Final = ChannelKind[float](

@@ -6,7 +6,8 @@ from math import floor, isclose
 
 import numpy as np
 import pytest
-from documents import CENTRE, PICTURE, disc_domain, random_pose
+from animations import still_document
+from documents import CENTRE, PICTURE, altered, disc_domain, random_pose
 from hypothesis import assume, given, settings, strategies as st
 
 from app.document import (
@@ -24,6 +25,7 @@ from app.document import (
     TRACK,
     VISIBILITY,
     Attachment,
+    Camera,
     Channel,
     Cycle,
     Document,
@@ -63,6 +65,7 @@ from app.document import (
     track_commands,
     with_repeats,
 )
+from app.document.checks import MAX_COORDINATE
 from app.document.commands.keys.stored_keys import put_keys
 from app.document.queries.channel_values.repeats import repeated_keys, rest_value
 from app.errors import LissomError
@@ -608,3 +611,19 @@ def refer_by_key(document, channel):
         else [channel.kind.field_of(key.value, name) for name in channel.kind.layer_fields]
         for key in keys_in(document, channel)
     ]
+
+
+@pytest.mark.parametrize(
+    "zooms", [(1e-3, 1e3, 1e3), (1e3, 1e-3, 1e-3), (1.0, 1e-3, 1e-3, 1e3, 1e3)]
+)
+def test_smooth_motion_of_the_camera_stays_within_the_limits_of_keys(zooms):
+    far = (MAX_COORDINATE, -MAX_COORDINATE)
+    keys = tuple(
+        CAMERA.key(8 * number**2, Camera(centre=far[number % 2], zoom=zoom))
+        for number, zoom in enumerate(zooms)
+    )
+    document = altered(still_document(), frames=FrameRange(0, 200), camera=keys)
+    for frame in np.linspace(0, keys[-1].frame, 97):
+        shot = camera_at(document, frame)
+        assert 1e-3 <= shot.zoom <= 1e3
+        assert abs(shot.centre.real) <= MAX_COORDINATE

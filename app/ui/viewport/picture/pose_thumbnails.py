@@ -57,6 +57,9 @@ class PosePictures:
             if layer not in meshes or pose not in project.document.layer(layer).poses:
                 continue
             mesh = meshes[layer]
+            # The mesh of a new outline may come in the next frame.
+            if mesh.domain.cage is not project.document.layer(layer).domain.cage:
+                continue
             positions = mesh.pose_vertices(pose)
             vertices = VertexArray(positions=positions, triangles=mesh.domain.mesh.triangles)
             size = (self._side, self._side)
