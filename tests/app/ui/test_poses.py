@@ -1,6 +1,7 @@
 """The library of poses and flipped poses, through the widgets."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from app.document import handle_commands
 from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.pose_drag import nudge_handles
-from app.editor.poses import flipping
+from app.editor.poses import flipping, library
 from app.storage import load_project, save_project
 from app.ui.shortcuts.keys import chords_of
 from app.ui.shortcuts.table import ACTIONS
@@ -262,3 +263,18 @@ def test_poses_of_the_library_are_solved_for_other_limits_with_the_keys(window, 
     assert project.layer.bounds == tighter
     assert all(project.layer.is_proven(pose) for pose in project.layer.poses)
     assert len(project.layer.poses) == 3
+
+
+def test_no_pose_is_drawn_on_the_mesh_of_another_outline(window, loose):
+    library.save_pose_to_library(window.session)
+    window.settle()
+    window.show_tab("Animate")
+    window.frames(3)
+    pictures, (kept,) = window.program.canvas.pose_pictures, loose.layer.library
+    assert pictures.get(loose.layer.id, kept.pose, 16) is not None
+    # As between a change of the outline and the next frame.
+    old = SimpleNamespace(store=SimpleNamespace(mesh=SimpleNamespace(source=None)))
+    runtimes = SimpleNamespace(layers={loose.layer.id: old})
+    changed = SimpleNamespace(document=loose.document, runtimes=runtimes)
+    pictures.draw(window.session, changed, posable=None)
+    assert pictures.get(loose.layer.id, kept.pose, 16) is None

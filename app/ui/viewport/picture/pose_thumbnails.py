@@ -58,7 +58,7 @@ class PosePictures:
                 continue
             mesh = meshes[layer]
             # The mesh of a new outline may come in the next frame.
-            if mesh.domain.cage is not project.document.layer(layer).domain.cage:
+            if mesh.source is not project.document.layer(layer).domain:
                 continue
             positions = mesh.pose_vertices(pose)
             vertices = VertexArray(positions=positions, triangles=mesh.domain.mesh.triangles)
