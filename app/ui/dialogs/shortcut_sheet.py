@@ -1,6 +1,6 @@
 """The list of all shortcuts, with a search, in which the keys of actions are changed."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, combinations_with_replacement
 from typing import NamedTuple
@@ -74,8 +74,8 @@ def _ask_keys(sheet: ShortcutSheet, spec: ActionSpec, keys: Mapping[str, str]) -
     done = replace(sheet, changed="", taken=0)
     others = {label: text for label, text in keys.items() if label != spec.label}
 
-    def choose(**given: int) -> Action:
-        texts = {label: chord_text(chord) if chord else "" for label, chord in given.items()}
+    def choose(given: Mapping[str, Sequence[int]]) -> Action:
+        texts = {label: ", ".join(map(chord_text, chords)) for label, chords in given.items()}
         return do(choose_keys, others | texts, done)
 
     actions: list[Action] = []
@@ -85,7 +85,7 @@ def _ask_keys(sheet: ShortcutSheet, spec: ActionSpec, keys: Mapping[str, str]) -
         imgui.text_unformatted(_("Press the new keys for “{label}”.").format(label=spec.label))
         imgui.same_line()
         if imgui.button(_("No keys")):
-            actions.append(choose(**{spec.label: 0}))
+            actions.append(choose({spec.label: ()}))
     else:
         imgui.text_unformatted(
             _("{keys} belongs to “{owner}”.").format(
@@ -94,8 +94,8 @@ def _ask_keys(sheet: ShortcutSheet, spec: ActionSpec, keys: Mapping[str, str]) -
         )
         imgui.same_line()
         if imgui.button(_("Use it for “{label}”").format(label=spec.label)):
-            left = next((each for each in chords_of(owner) if each != sheet.taken), 0)
-            actions.append(choose(**{owner.label: left, spec.label: sheet.taken}))
+            left = [each for each in chords_of(owner) if each != sheet.taken]
+            actions.append(choose({owner.label: left, spec.label: (sheet.taken,)}))
     if spec.label in keys:
         imgui.same_line()
         own = ", ".join(map(format_chord, own_chords(spec))) or _("none")
@@ -108,7 +108,7 @@ def _ask_keys(sheet: ShortcutSheet, spec: ActionSpec, keys: Mapping[str, str]) -
     if chord is not None and _owner_of(chord, spec) is not None:
         actions.append(do(edit_shortcut_sheet, replace(sheet, taken=chord)))
     elif chord is not None:
-        actions.append(choose(**{spec.label: chord}))
+        actions.append(choose({spec.label: (chord,)}))
     return actions[:1]
 
 

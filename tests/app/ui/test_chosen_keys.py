@@ -76,6 +76,16 @@ def test_keys_of_another_action_are_taken_only_when_asked_for(sheet):
     assert shown_keys(viewing.HANDLES) == "H"
 
 
+def test_an_action_that_loses_a_key_keeps_its_others(sheet):
+    click(sheet, "keys of Wireframe")
+    press(sheet, CTRL | int(Key.equal))
+    click(sheet, "Use it for “Wireframe”")
+    assert chosen(sheet) == {
+        "Larger interface": "Ctrl+Shift+Equal, Ctrl+KeypadAdd",
+        "Wireframe": "Ctrl+Equal",
+    }
+
+
 def test_escape_ends_the_question_and_then_the_list(sheet):
     click(sheet, "keys of Wireframe")
     press(sheet, Key.escape)
