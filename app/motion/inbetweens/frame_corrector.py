@@ -7,14 +7,17 @@ same layer thus find earlier results.
 import threading
 from collections.abc import Callable, Iterable
 from copy import copy
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from app.document import (
+    SLIDER,
     Clip,
     DistortionRange,
     Variant,
+    motion_source,
     slider_poses,
     stiffness_source,
 )
@@ -56,19 +59,16 @@ def have_same_base_frames(clip: Clip, other: Clip, *, values: bool = True) -> bo
     """
 
     def source(of: Clip) -> tuple[object, ...]:
-        layer = of.layer
-        own = of.sliders if values else tuple(each.slider.name for each in of.sliders)
+        layer, own = (
+            of.layer,
+            of.sliders if values else tuple(each.slider.name for each in of.sliders),
+        )
+        # The layer's own transform and its parents drive springs.
+        others = {each: keys for each, keys in layer.channels.items() if each[0] != SLIDER.name}
+        alone = motion_source(replace(layer, tracks=(), sliders=(), channels=others))
         return (
-            *(layer.id, layer.domain, layer.handles, layer.keys, layer.cycles, layer.anchor),
-            *(
-                layer.attachments,
-                layer.has_auto_pins,
-                layer.springs,
-                layer.variant,
-                layer.widest_bounds,
-            ),
-            *(stiffness_source(layer), layer.bones),
-            *(of.frames, of.loop, of.fps, of.baseline, of.parents, own, slider_poses(of)),
+            *(alone, stiffness_source(layer), slider_poses(of), own),
+            *(of.frames, of.loop, of.fps, of.baseline, of.parents),
         )
 
     return source(clip) == source(other)

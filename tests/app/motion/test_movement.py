@@ -6,17 +6,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from chains import chain, seen
+from documents import CENTRE
 from numpy.testing import assert_allclose
 
 from app.document import (
     TRANSFORM,
     Attachment,
+    Spring,
     Transform,
     clip_of,
     layer_commands as layers,
     layer_value_at,
     transform_at,
 )
+from app.document.keyframe import Handle, Target
 from app.motion import Animation, Evaluator, ParentTransforms
 from app.motion.parenting.parent_transforms import find_parent_motion
 
@@ -149,3 +152,21 @@ def test_springs_feel_the_movement():
     carried = find_parent_motion(moved, 0)
     assert carried(20.0) == transform_at(moved, moved.layer(0), 20.0)
     assert carried(20.0).shift != pytest.approx(0)
+
+
+def test_corrections_follow_an_edit_of_the_movement_that_springs_feel():
+    spring = Spring(handle=0, frequency=1.5, damping=0.2)
+    first = chain(count=1).layer(0)
+    keys = [
+        replace(k, pose=replace(k.pose, targets={0: Target(position=CENTRE)})) for k in first.keys
+    ]
+    handles = (Handle(id=0, name="a", position=CENTRE + 60j),)
+    swinging = replace(first, handles=handles, next_handle=1, keys=tuple(keys), springs=(spring,))
+    document = moving(chain(count=1).with_layer(swinging), 0)
+    farther = (*MOVES[:1], TRANSFORM.key(20, Transform(-90 + 30j)), *MOVES[2:])
+    edited = moving(document, 0, farther)
+    evaluator = Evaluator.exact(document)
+    evaluator.evaluate(document, 12)
+    found = evaluator.evaluate(edited, 12).layers[0]
+    afresh = Evaluator.exact(edited).evaluate(edited, 12).layers[0]
+    assert_allclose(found.positions, afresh.positions, rtol=0, atol=1e-9)
