@@ -1,14 +1,19 @@
-"""The catalogue of texts: `python -m tests.catalogue` writes it anew."""
+"""The catalogue of texts: `python -m tests.catalogue` writes it anew, and updates the languages.
+
+It prints what each language lacks, to be filled in there.
+"""
 
 import ast
-from collections.abc import Iterator
+import re
+import sys
+from collections.abc import Iterator, Mapping
 from io import BytesIO
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
-from babel.messages.pofile import write_po
+from babel.messages.pofile import read_po, write_po
 
-from app.texts import DOMAIN, LOCALE
+from app.texts import DOMAIN, LOCALE, read_translations
 
 ROOT = Path(__file__).parents[1]
 TEMPLATE = LOCALE / f"{DOMAIN}.pot"
@@ -79,6 +84,60 @@ def make_catalogue() -> bytes:
     return written.getvalue()
 
 
+def translated_files() -> list[Path]:
+    """Return the files of all languages beside English."""
+    return sorted(LOCALE.glob("*.po"))
+
+
+def template_texts() -> list[tuple[str, ...]]:
+    """Return the catalogue's texts in its order, each with its plural if it has one."""
+    with TEMPLATE.open("rb") as file:
+        messages = [message for message in read_po(file) if message.id]
+    return [message.id if message.pluralizable else (message.id,) for message in messages]
+
+
+def quote(text: str) -> str:
+    """Return a text as files of translations have it, on one line."""
+    escaped = (
+        text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
+    )
+    return f'"{escaped}"'
+
+
+def make_translations(known: Mapping[str, tuple[str, ...]]) -> str:
+    """Return a file of the known translations: all of the catalogue's texts, and no others.
+
+    Each text is on one line, without its place in the program, so that changes merge well.
+    """
+    (header,) = known[""]
+    count = int(re.search(r"nplurals=(\d)", header)[1])
+    entries = [
+        'msgid ""\nmsgstr ""\n'
+        + "".join(f"{quote(line)}\n" for line in header.splitlines(keepends=True))
+    ]
+    for text in template_texts():
+        translated = known.get(text[0], ())
+        if len(text) == 1:
+            lines = [f"msgid {quote(text[0])}", f"msgstr {quote((*translated, '')[0])}"]
+        else:
+            forms = translated if len(translated) == count else ("",) * count
+            lines = [f"msgid {quote(text[0])}", f"msgid_plural {quote(text[1])}"]
+            lines += [f"msgstr[{i}] {quote(form)}" for i, form in enumerate(forms)]
+        entries.append("\n".join(lines) + "\n")
+    return "\n".join(entries)
+
+
+def missing_texts(path: Path) -> list[str]:
+    """Return the texts of the catalogue that a language lacks."""
+    known = read_translations(path)
+    return [text[0] for text in template_texts() if not all(known.get(text[0], ("",)))]
+
+
 if __name__ == "__main__":
     TEMPLATE.parent.mkdir(exist_ok=True)
     TEMPLATE.write_bytes(make_catalogue())
+    for path in translated_files():
+        # Of a merge with conflicts, all entries of both sides are kept.
+        path.write_text(make_translations(read_translations(path)), encoding="utf-8")
+        for text in missing_texts(path):
+            sys.stdout.write(f"{path.name}: {text}\n")

@@ -6,6 +6,9 @@ import hypothesis
 import pytest
 from hypothesis.internal.conjecture import providers
 
+# Texts are English on any system, also in the processes that tests start.
+os.environ["LISSOM_LANGUAGE"] = "en"
+
 from app.cli.process import use_one_thread
 
 # As in the program, and before anything imports NumPy.

@@ -7,12 +7,31 @@ from collections.abc import Sequence
 from typing import Any, NoReturn, Self
 
 from app.errors import display_message, few_notices, printable
-from app.texts import N_, _, message_of
+from app.texts import N_, _, message_of, ngettext
 from engine.errors import Message
 
 EXIT_ERROR = 2
 NO_WHOLE = N_("expected a whole number, not {text!r}")
 NO_NUMBER = N_("expected a number, not {text!r}")
+# Texts of argparse, which takes them from the catalogue too.
+ARGPARSE_TEXTS = (
+    N_("usage: "),
+    N_("positional arguments"),
+    N_("options"),
+    N_("show this help message and exit"),
+    N_("argument %(argument_name)s: %(message)s"),
+    N_("the following arguments are required: %s"),
+    N_("one of the arguments %s is required"),
+    N_("not allowed with argument %s"),
+    N_("unrecognized arguments: %s"),
+    N_("expected one argument"),
+    N_("expected at least one argument"),
+    N_("ambiguous option: %(option)s could match %(matches)s"),
+    N_("ignored explicit argument %r"),
+    N_("invalid choice: %(value)r (choose from %(choices)s)"),
+    N_("invalid %(type)s value: %(value)r"),
+)
+vars(argparse).update(_=_, ngettext=ngettext)
 PATIENCE = 0.5  # seconds before progress is shown
 
 

@@ -21,6 +21,7 @@ from app.editor.actions.project_files import autosaving, files, recovery
 from app.editor.parts.dialogs import DialogState
 from app.editor.parts.settings import SessionSettings
 from app.errors import EXPECTED_ERRORS
+from app.folders import settings_folder
 from app.render import Renderer
 from app.render.gpu.context import window_context
 from app.storage import (
@@ -28,7 +29,6 @@ from app.storage import (
     make_settings_folder,
     open_fault_log,
     save_preferences,
-    settings_folder,
 )
 from app.texts import _, message_of
 from app.ui.dialogs.native_dialog import find_system_dialogs

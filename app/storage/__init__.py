@@ -93,11 +93,9 @@ from app.storage.preferences import (
     SMALLEST_SCALE as SMALLEST_SCALE,
     Preferences as Preferences,
     ThemeName as ThemeName,
-    home_folder as home_folder,
     load_preferences as load_preferences,
     make_settings_folder as make_settings_folder,
     save_preferences as save_preferences,
-    settings_folder as settings_folder,
 )
 from app.storage.project.channel_codecs import IN_FILES as IN_FILES, key_codec as key_codec
 from app.storage.project.codecs import (

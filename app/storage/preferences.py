@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import sys
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
@@ -15,7 +14,7 @@ from app.errors import LissomError
 from app.export_formats import expand_colour
 from app.storage.files.atomic import write_atomically
 from app.storage.files.reading import read_file
-from app.texts import _
+from app.texts import _, list_languages, source_text
 
 ThemeName = Literal["dark", "light"]
 SMALLEST_SCALE, LARGEST_SCALE = 0.75, 3.0
@@ -55,7 +54,10 @@ class Preferences:
     exported : Path, optional
         Last export folder.
     keys : mapping of str to str
-        Key chords that the person chose, by labels of actions: "Ctrl+B", or "" for none.
+        Key chords that the person chose, by labels of actions: "Ctrl+B", or "" for none. The file
+        has the English labels.
+    language : str
+        Code of the language, such as "de"; empty for the system's. It is read when Lissom starts.
     memory : int, optional
         Megabytes for the decoded pictures of a file; None for a share of the machine's memory.
     """
@@ -76,6 +78,7 @@ class Preferences:
     folder: Path | None = None
     exported: Path | None = None
     keys: Mapping[str, str] = field(default_factory=dict)
+    language: str = ""
     memory: int | None = None
 
     @property
@@ -90,30 +93,6 @@ class Preferences:
 
     def without_recent(self, path: Path) -> "Preferences":
         return replace(self, recent=tuple(other for other in self.recent if other != path))
-
-
-def home_folder() -> Path:
-    """Return the person's home folder, or the root for a person without one, as in containers.
-
-    It may not exist.
-    """
-    try:
-        return Path.home()
-    except RuntimeError:
-        return Path(Path.cwd().anchor)
-
-
-def settings_folder() -> Path:
-    """Return the person's folder for settings and unsaved work; it may not exist yet."""
-    # Not platformdirs: it heeds XDG_CONFIG_HOME on macOS too, and would lose settings there.
-    home = home_folder()
-    if sys.platform == "win32":
-        return Path(os.environ.get("APPDATA") or home / "AppData" / "Roaming") / "Lissom"
-    if sys.platform == "darwin":
-        return home / "Library" / "Application Support" / "Lissom"
-    # The standard says to ignore a relative path.
-    chosen = Path(os.environ.get("XDG_CONFIG_HOME", ""))
-    return (chosen if chosen.is_absolute() else home / ".config") / "lissom"
 
 
 def make_settings_folder(folder: Path) -> None:
@@ -146,7 +125,8 @@ def load_preferences(folder: Path) -> Preferences:
 def save_preferences(folder: Path, preferences: Preferences) -> None:
     """Write the preferences. If this fails, the old preferences stay."""
     # JSON has no paths; this converts paths and lists of paths.
-    content = {**asdict(preferences), "easing": preferences.easing.to_json()}
+    keys = {source_text(label): chords for label, chords in preferences.keys.items()}
+    content = {**asdict(preferences), "easing": preferences.easing.to_json(), "keys": keys}
     text = json.dumps(content, indent=1, default=str).encode()
     make_settings_folder(folder)
     write_atomically(folder / "preferences.json", lambda file: file.write(text), is_private=True)
@@ -181,7 +161,8 @@ def _understood(content: dict[str, Any]) -> Preferences:
         path_reach=int(number("path_reach", 0, LONGEST_PATH_REACH)),
         panel_width=number("panel_width", 1, LARGEST_DOCK),
         timeline_height=number("timeline_height", 1, LARGEST_DOCK),
-        keys={label: chords for label, chords in keys if isinstance(chords, str)},
+        keys={_(label): chords for label, chords in keys if isinstance(chords, str)},
+        language=language if (language := str(content.get("language"))) in list_languages() else "",
         recent=tuple(Path(path) for path in paths if isinstance(path, str))[:MOST_RECENT],
         folder=folder,
         exported=exported,

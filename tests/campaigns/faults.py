@@ -21,6 +21,7 @@ import numpy as np
 
 from app.document import Document
 from app.errors import LissomError
+from app.folders import settings_folder
 from app.storage.assets import sample_images
 from app.storage.autosave import (
     UNKNOWN_SOURCE,
@@ -33,7 +34,6 @@ from app.storage.preferences import (
     load_preferences,
     make_settings_folder,
     save_preferences,
-    settings_folder,
 )
 from app.storage.project_file import load_project, save_project
 from tests.campaigns.kills import FORMATS, LAYERED, expect, export_friend, number_of, numbered

@@ -24,6 +24,7 @@ from psd_tools import PSDImage
 
 from app.cli.main import main
 from app.errors import EXPECTED_ERRORS
+from app.folders import settings_folder
 from app.solving.script.pose_script import load_pose_script
 from app.storage.autosave import Autosave, SourceInfo, load_recoverable_file, read_source_info
 from app.storage.files.reading import read_file
@@ -34,7 +35,6 @@ from app.storage.preferences import (
     Preferences,
     load_preferences,
     save_preferences,
-    settings_folder,
 )
 from app.storage.project_file import load_project, save_project
 from app.storage.thumbnail import draw_thumbnail, read_thumbnail

@@ -25,6 +25,8 @@ VALUES = {
     "Esc",
     "Escape",
     "Enter",
+    "English",
+    "Deutsch",
     "Home",
     "End",
 }

@@ -18,6 +18,7 @@ from pathlib import Path
 
 from app.cli.console import print_line
 from app.errors import REINSTALL, LissomError
+from app.folders import home_folder
 from app.texts import N_, _
 
 PROGRAM = "lissom"
@@ -123,8 +124,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _data_home() -> Path:
     """Return the person's data folder; a relative path in the variable is ignored."""
-    from app.storage import home_folder
-
     chosen = Path(os.environ.get("XDG_DATA_HOME", ""))
     return chosen if chosen.is_absolute() else home_folder() / ".local" / "share"
 

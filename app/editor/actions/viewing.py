@@ -203,6 +203,12 @@ def toggle_theme(session: Session) -> None:
     session.settings.prefer(theme=theme)
 
 
+def set_language(session: Session, language: str) -> None:
+    """Set the code of the language, or "" for the system's, for the next start."""
+    session.settings.prefer(language=language)
+    session.notices.show(_("The language changes when Lissom starts again."), topic="language")
+
+
 @named_action(
     _("Larger interface"), "Ctrl+Equal, Ctrl+Shift+Equal, Ctrl+KeypadAdd", needs_project=False
 )

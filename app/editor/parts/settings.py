@@ -6,7 +6,8 @@ from typing import Any
 
 from app.document import Meshing
 from app.editor.work.revised import Revised
-from app.storage import Autosave, Preferences, home_folder
+from app.folders import home_folder
+from app.storage import Autosave, Preferences
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

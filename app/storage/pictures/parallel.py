@@ -6,7 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
 from app.errors import LissomError
-from app.storage.preferences import load_preferences, settings_folder
+from app.folders import preferences_file, settings_folder
+from app.storage.preferences import load_preferences
 from app.texts import N_, _
 
 In = TypeVar("In")
@@ -34,7 +35,7 @@ def require_memory(sizes: Iterable[tuple[int, int]]) -> None:
             _(MEMORY_OF_PICTURES).format(
                 needed=needed / 1e6,
                 budget=budget / 1e6,
-                preferences=settings_folder() / "preferences.json",
+                preferences=preferences_file(),
             )
         )
 

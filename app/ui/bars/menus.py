@@ -12,7 +12,7 @@ from app.editor.actions.project_files import files
 from app.editor.actions.timing import keys
 from app.errors import display_name
 from app.storage import CHECKER
-from app.texts import _
+from app.texts import _, list_languages
 from app.ui.bars.methods import draw_method_menu
 from app.ui.panel import Panel, is_in_front
 from app.ui.shortcuts.table import MENUS, SUBMENUS
@@ -82,6 +82,21 @@ def _backdrops(session: Session) -> list[Action]:
     colour = colour_field("own colour", BLACK if current == CHECKER else current)
     if colour is not None:
         actions.append(do(viewing.set_backdrop, colour))
+    imgui.end_menu()
+    return actions
+
+
+def _languages(session: Session) -> list[Action]:
+    """Draw the menu of languages, each as it calls itself."""
+    if not imgui.begin_menu(_("Language")):
+        return []
+    current = session.settings.preferences.language
+    names = {"": _("As the system"), **list_languages()}
+    actions = [
+        do(viewing.set_language, code)
+        for code, name in names.items()
+        if imgui.menu_item(name, "", code == current)[0]
+    ]
     imgui.end_menu()
     return actions
 
@@ -159,7 +174,7 @@ def _recent(session: Session) -> list[Action]:
 BELOW: dict[ActionSpec, Callable[[Session], list[Action]]] = {
     files.ask_file_to_open: _recent,
     viewing.MOTION_PATHS: _path_reaches,
-    viewing.shrink_interface: _backdrops,
+    viewing.shrink_interface: lambda session: _backdrops(session) + _languages(session),
     keys.EASE_KEYS[-1]: _new_keys,
     viewing.WIREFRAME: _methods,
 }

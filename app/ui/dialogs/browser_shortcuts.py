@@ -10,7 +10,7 @@ from typing import NamedTuple
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.errors import display_name
-from app.storage import home_folder
+from app.folders import home_folder
 from app.texts import _
 
 MOST_RECENT = 5

@@ -10,8 +10,8 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 from app.editor import Action, FileDialog, Session, do
 from app.editor.actions.dialog_actions import browse_files, choose_file, close_dialog
 from app.errors import display_name
+from app.folders import home_folder
 from app.render import Thumbnail
-from app.storage import home_folder
 from app.texts import _
 from app.ui.dialogs.browser_shortcuts import (
     BrowserShortcut,

@@ -8,13 +8,12 @@ from pathlib import Path
 import pytest
 
 from app.errors import LissomError
+from app.folders import home_folder, settings_folder
 from app.storage.preferences import (
     MOST_RECENT,
     Preferences,
-    home_folder,
     load_preferences,
     save_preferences,
-    settings_folder,
 )
 
 CHOSEN = Preferences(
@@ -115,7 +114,7 @@ def test_recent_files_are_the_newest_ones_once_each():
 
 
 def test_the_folder_follows_the_system(monkeypatch, tmp_path):
-    monkeypatch.setattr("app.storage.preferences.sys.platform", "linux")
+    monkeypatch.setattr("app.folders.sys.platform", "linux")
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("XDG_CONFIG_HOME", "/etc/mine")
     assert settings_folder() == Path("/etc/mine/lissom")
@@ -125,9 +124,9 @@ def test_the_folder_follows_the_system(monkeypatch, tmp_path):
     monkeypatch.delenv("XDG_CONFIG_HOME")
     assert settings_folder() == tmp_path / ".config" / "lissom"
     monkeypatch.setenv("XDG_CONFIG_HOME", "/etc/mine")
-    monkeypatch.setattr("app.storage.preferences.sys.platform", "darwin")
+    monkeypatch.setattr("app.folders.sys.platform", "darwin")
     assert settings_folder() == tmp_path / "Library" / "Application Support" / "Lissom"
-    monkeypatch.setattr("app.storage.preferences.sys.platform", "win32")
+    monkeypatch.setattr("app.folders.sys.platform", "win32")
     monkeypatch.setenv("APPDATA", "/mine/Roaming")
     assert settings_folder() == Path("/mine/Roaming/Lissom")
     monkeypatch.setenv("APPDATA", "")
