@@ -24,7 +24,7 @@ from app.editor.parts.dialogs import (
 )
 from app.editor.parts.export_state import ExportRun as ExportRun
 from app.editor.parts.notices import Toast as Toast
-from app.editor.parts.timeline import (
+from app.editor.parts.timeline.gestures import (
     CycleDrag as CycleDrag,
     Edge as Edge,
     EdgeDrag as EdgeDrag,
@@ -34,8 +34,8 @@ from app.editor.parts.timeline import (
     SoundDrag as SoundDrag,
     TimeDrag as TimeDrag,
     TimeGesture as TimeGesture,
-    TimeRangeView as TimeRangeView,
 )
+from app.editor.parts.timeline.time_range import TimeRangeView as TimeRangeView
 from app.editor.parts.tools import CutTool as CutTool, Hint as Hint, StiffnessTool as StiffnessTool
 from app.editor.parts.viewport_state import (
     CurveKind as CurveKind,

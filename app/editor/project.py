@@ -31,7 +31,7 @@ from app.editor.parts.export_state import ExportDestinations
 from app.editor.parts.layer_list import LayerListState
 from app.editor.parts.project_file import ProjectFile
 from app.editor.parts.selection import Selection
-from app.editor.parts.timeline import TimelineState
+from app.editor.parts.timeline.timeline_state import TimelineState
 from app.editor.parts.viewport_state import ViewportState, fit_view_around
 from app.editor.work.drag_session import DragSession
 from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime, LayerRuntimes

@@ -12,7 +12,7 @@ from app.editor.actions import (
     playback,
 )
 from app.editor.actions.posing.pose_drag import set_targets
-from app.editor.parts.timeline import TimeRangeView
+from app.editor.parts.timeline.time_range import TimeRangeView
 from app.editor.project import Project
 from tests.manual.film import Film
 from tests.readme.window import handle_named, open_sample

@@ -7,7 +7,8 @@ from app.document import CAMERA, OPACITY, Camera, Channel, camera_at, pose_chann
 from app.editor.actions.posing.pose_drag import drag_handles, move_pose
 from app.editor.actions.timing import channel_keys, timeline_drag
 from app.editor.actions.tracking.track_dragging import drag_track_handle, rotate_track_handle
-from app.editor.parts.timeline import CycleDrag, EdgeDrag, KeyDrag, TimeRangeView
+from app.editor.parts.timeline.gestures import CycleDrag, EdgeDrag, KeyDrag
+from app.editor.parts.timeline.time_range import TimeRangeView
 from app.editor.poses import flipping
 from app.editor.session import Session
 from app.editor.tools import tool_pointer

@@ -19,11 +19,11 @@ from app.ui.timeline.rows.background import draw_key_box, draw_track_background
 from app.ui.timeline.rows.cycles import draw_cycle_bars
 from app.ui.timeline.rows.lanes import draw_lane_keys
 from app.ui.timeline.rows.layers import draw_layer_rows
+from app.ui.timeline.rows.segments import draw_pose_segments
 from app.ui.timeline.rows.sounds import draw_sound_lanes
 from app.ui.timeline.ruler.edges import draw_range_edges
 from app.ui.timeline.ruler.markers import draw_markers
 from app.ui.timeline.ruler.ruler import draw_overview, draw_playhead, draw_ruler
-from app.ui.timeline.segments import draw_pose_segments
 
 ZOOM_STEP = 1.2  # per notch of the wheel
 SCROLL_STEP = 4.0  # em

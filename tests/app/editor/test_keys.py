@@ -25,7 +25,7 @@ from app.editor.actions import editing
 from app.editor.actions.editing import FIRST_KEY_STAYS
 from app.editor.actions.timing import keys
 from app.editor.actions.timing.keys import NO_LAST_FRAME
-from app.editor.parts.timeline import measure_key_errors
+from app.editor.parts.timeline.timeline_state import measure_key_errors
 from app.editor.work.derived import Derived
 from app.errors import LissomError
 

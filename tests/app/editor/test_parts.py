@@ -12,7 +12,9 @@ from app.editor.parts.dialogs import DialogState, ProblemReport, RecoveryDialog,
 from app.editor.parts.export_state import ExportDestinations
 from app.editor.parts.notices import Notices
 from app.editor.parts.selection import Selection
-from app.editor.parts.timeline import KeyBox, TimelineState, TimeRangeView
+from app.editor.parts.timeline.gestures import KeyBox
+from app.editor.parts.timeline.time_range import TimeRangeView
+from app.editor.parts.timeline.timeline_state import TimelineState
 from app.editor.parts.tools import ToolState
 from app.editor.work.motion_setup import MotionSetup
 from app.editor.work.revised import Revised

@@ -22,7 +22,7 @@ from app.editor.layering.layer_list import (
     toggle_visibility_key,
 )
 from app.editor.layering.layer_selection import set_active_layer
-from app.editor.parts.timeline import TimeRangeView
+from app.editor.parts.timeline.time_range import TimeRangeView
 from app.editor.work.pending_change import PendingChange
 from app.solving import KeyResolver
 from app.storage.assets import sample_images

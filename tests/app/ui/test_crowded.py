@@ -15,7 +15,7 @@ from app.document.layer import Handle
 from app.editor.actions import editing
 from app.editor.actions.project_files import saving
 from app.editor.layering import layer_list
-from app.editor.parts.timeline import TimeRangeView
+from app.editor.parts.timeline.time_range import TimeRangeView
 from app.motion import layer_stages
 
 MANY = 4_000

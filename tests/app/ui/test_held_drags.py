@@ -23,7 +23,8 @@ from app.editor.actions.project_files import saving
 from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.layer_selection import set_active_layer
-from app.editor.parts.timeline import KeyDrag, TimeRangeView
+from app.editor.parts.timeline.gestures import KeyDrag
+from app.editor.parts.timeline.time_range import TimeRangeView
 from app.editor.poses import copying
 from app.errors import LissomError
 from app.solving import DragSolver

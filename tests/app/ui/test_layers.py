@@ -52,7 +52,7 @@ from app.editor.layering.pictures import (
     make_still,
     replace_picture,
 )
-from app.editor.parts.timeline import TimeRangeView
+from app.editor.parts.timeline.time_range import TimeRangeView
 from app.editor.poses import pasting
 from app.errors import EMPTY_IMPORT_LOG
 from app.motion import ParentTransforms

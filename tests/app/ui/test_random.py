@@ -92,7 +92,7 @@ from app.editor.layering.parenting import (
 )
 from app.editor.layering.pictures import add_layers, make_posable, make_still
 from app.editor.layering.switches import create_switch
-from app.editor.parts.timeline import TimeRangeView
+from app.editor.parts.timeline.time_range import TimeRangeView
 from app.editor.poses import copying, flipping, library, pasting, pasting_targets
 from app.editor.work import drag_session
 from app.editor.work.jobs import JobKind, Jobs

@@ -29,7 +29,7 @@ from app.editor.actions.timing.channel_keys import (
     key_camera,
     toggle_camera_view,
 )
-from app.editor.parts.timeline import TimeRangeView
+from app.editor.parts.timeline.time_range import TimeRangeView
 from app.editor.parts.viewport_state import fit_view_around
 from app.motion import BoundingBox
 from app.ui.bars.status import describe_motion_limit

@@ -24,7 +24,7 @@ from app.editor.actions.posing.pose_solver import POSING
 from app.editor.actions.project_files import autosaving, export_settings, files, saving
 from app.editor.actions.timing import keys, timeline_drag
 from app.editor.actions.updates import measuring_jobs, stage_jobs
-from app.editor.parts.timeline import KeyBox
+from app.editor.parts.timeline.gestures import KeyBox
 from app.editor.work.derived import Derived
 from app.errors import CANCELLED, report_progress
 from app.motion.extents.extent import BoundingBox, extent_key

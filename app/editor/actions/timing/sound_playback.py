@@ -4,7 +4,8 @@ from dataclasses import replace
 
 from app.document import loop_length
 from app.editor.error_reports import as_sentence
-from app.editor.parts.timeline import HeardSound, ScrubDrag
+from app.editor.parts.timeline.gestures import ScrubDrag
+from app.editor.parts.timeline.timeline_state import HeardSound
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.errors import LissomError

@@ -9,7 +9,7 @@ from app.editor.action import do
 from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action
 from app.editor.error_reports import run_job
-from app.editor.parts.timeline import SoundDrag
+from app.editor.parts.timeline.gestures import SoundDrag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind

@@ -24,7 +24,7 @@ from app.editor.actions import editing, playback
 from app.editor.actions.action_spec import named_action
 from app.editor.actions.timing.keys import edit_timing
 from app.editor.actions.timing.sounds import drag_sound
-from app.editor.parts.timeline import (
+from app.editor.parts.timeline.gestures import (
     CycleDrag,
     EdgeDrag,
     KeyBox,
@@ -33,8 +33,8 @@ from app.editor.parts.timeline import (
     SoundDrag,
     TimeDrag,
     TimeGesture,
-    TimeRangeView,
 )
+from app.editor.parts.timeline.time_range import TimeRangeView
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.errors import LissomError

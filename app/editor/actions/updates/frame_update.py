@@ -12,7 +12,7 @@ from app.editor.actions.posing.reach_limit import show_stopped_drag
 from app.editor.actions.timing import sounds
 from app.editor.actions.tracking.recording import update_track_keys
 from app.editor.actions.updates.stage_jobs import due_jobs, is_worth_preparing
-from app.editor.parts.timeline import measure_key_errors
+from app.editor.parts.timeline.timeline_state import measure_key_errors
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.revised import revision_getter

@@ -1,157 +1,25 @@
-"""The person's view of the timeline, and drags of the pointer in it."""
+"""The playhead, and the person's view of the timeline."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import inf
-from typing import Any, Literal, Self
+from typing import Any
 
 from app.document import (
     Channel,
     Clip,
     Document,
-    FrameRange,
-    KeysByChannel,
     Layer,
     Playhead,
     Pose,
     measure_target_errors,
 )
+from app.editor.parts.timeline.gestures import TimeGesture
+from app.editor.parts.timeline.time_range import TimeRangeView
 from app.editor.work.derived import Derived
 from app.editor.work.revised import Revised
 from app.editor.work.track_keys import Recording
 from app.sound import SoundMix
-
-SMALLEST, LARGEST = 0.002, 4.0  # em per frame
-MARGIN = 1.4  # em left and right of fitted frames
-ROOM = 0.04  # of the width: space right of the last frame for dragged keys
-Edge = Literal["preview start", "preview range", "preview end", "animation end"]
-
-
-@dataclass(frozen=True, slots=True)
-class TimeRangeView:
-    """The visible range of time."""
-
-    start: float  # frame at the left edge
-    scale: float  # em per frame
-
-    @classmethod
-    def fitting(cls, frames: FrameRange, width: float) -> Self:
-        """Return the range that shows all frames in a width in em."""
-        free = max(width * (1 - ROOM) - 2 * MARGIN, 1.0)
-        scale = min(free / max(frames.last - frames.first, 1), LARGEST)
-        return cls(frames.first - MARGIN / scale, scale)
-
-    def place(self, frame: float) -> float:
-        """Return a frame's distance from the left edge, in em."""
-        return (frame - self.start) * self.scale
-
-    def frame(self, place: float) -> float:
-        """Return the frame at a place in em."""
-        return self.start + place / self.scale
-
-    def zoomed(self, factor: float, place: float) -> Self:
-        """Return the range with a frame width scaled by a factor, fixed at `place`."""
-        scale = min(max(self.scale * factor, SMALLEST), LARGEST)
-        return replace(self, start=self.frame(place) - place / scale, scale=scale)
-
-    def panned(self, by: float) -> Self:
-        """Return the range moved by em to later frames."""
-        return replace(self, start=self.start + by / self.scale)
-
-    def kept_near(self, frames: FrameRange, width: float) -> Self:
-        """Return the range moved so that at least half of the width shows the frames' range."""
-        half = width / 2 / self.scale
-        return replace(self, start=min(max(self.start, frames.first - half), frames.last - half))
-
-    def showing(self, frame: float, width: float, *, turns: bool) -> Self:
-        """Return the range moved to show a frame; unchanged if it is visible.
-
-        Parameters
-        ----------
-        width : float
-            In em.
-        turns : bool
-            Whether to move by a whole page instead of the least distance.
-        """
-        place = self.place(frame)
-        if 0 <= place <= width:
-            return self
-        if turns:
-            return self.panned(place - MARGIN)
-        return self.panned(place if place < 0 else place - width)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class TimeDrag:
-    """A drag in the timeline, of keys and edges in the document before it."""
-
-    start: float  # frame of the press
-    gesture: object = field(default_factory=object)  # its commands are one undo step
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class KeyDrag(TimeDrag):
-    """Drag of keys, or of copies of them."""
-
-    keys: KeysByChannel  # before the drag
-    channel: Channel[Any]  # of the pressed key
-    pressed: int  # frame of the pressed key
-    mark: KeysByChannel  # keys that the pressed mark stands for
-    copies: bool
-    by: int = 0  # offset in frames
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class EdgeDrag(TimeDrag):
-    """Drag of an end of the preview range, of the whole range, or of the animation's end."""
-
-    edge: Edge
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class CycleDrag(TimeDrag):
-    """Drag of the end of a cycle that begins at a frame, or of the end of its repeats."""
-
-    layer: int
-    first: int
-    is_stretch: bool  # whether it is the end of the first pass
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SoundDrag(TimeDrag):
-    """Drag of a sound in time, or of one of its ends."""
-
-    sound: str  # name
-    part: Literal["whole", "begin", "end"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class HeardSound:
-    """What is heard, or was heard last."""
-
-    playhead: Playhead  # as it followed the sound
-    source: tuple[object, ...] | None = None  # values that the mix depends on
-    mix: SoundMix | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class KeyBox:
-    """A box of time and lanes that selects keys."""
-
-    start: float  # frame of the press
-    channel: Channel[Any]  # lane of the press
-    keeps: KeysByChannel  # other selected keys
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ScrubDrag:
-    """Drag of the playhead, which is `offset` frames later than the pointer."""
-
-    offset: float = 0.0
-
-
-TimeGesture = TimeDrag | KeyBox | ScrubDrag
-
 
 # Target errors in pixels, by handle id, of each key's pose.
 KeyErrors = Mapping[Pose, Mapping[int, float]]
@@ -174,6 +42,15 @@ def measure_key_errors(layer: Layer, earlier: Derived[Layer, KeyErrors]) -> KeyE
 def _measured_by(layer: Layer) -> tuple[object, ...]:
     """Return all values of a layer, besides its poses, that target errors depend on."""
     return layer.domain, layer.handles, layer.sprung_handles
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class HeardSound:
+    """What is heard, or was heard last."""
+
+    playhead: Playhead  # as it followed the sound
+    source: tuple[object, ...] | None = None  # values that the mix depends on
+    mix: SoundMix | None = None
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
