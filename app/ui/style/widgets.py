@@ -175,7 +175,9 @@ def menu_entry(text: str, icon: str = "", keys: str = "", *, reason: str | None 
     return chosen
 
 
-def split_line(count: int, gap: float | None = None, *, room: float = 0.0) -> Iterator[float]:
+def split_line(
+    count: int, gap: float | None = None, *, room: float = 0.0, widest: float = 0.0
+) -> Iterator[float]:
     """Lay items side by side over the rest of the line: yield each item's width before it.
 
     Parameters
@@ -184,12 +186,17 @@ def split_line(count: int, gap: float | None = None, *, room: float = 0.0) -> It
         Pixels between two items; by default the style's spacing.
     room : float
         Pixels to leave free at the end of the line.
+    widest : float
+        Pixels that an item needs. Where they do not all fit, they take several lines.
     """
     gap = imgui.get_style().item_spacing.x if gap is None else gap
-    width = (imgui.get_content_region_avail().x - room - gap * (count - 1)) / count
+    left, available = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x - room
+    fitting = int((available + gap) // (widest + gap)) if widest else count
+    # Lines of equal length: four items of which three would fit become two and two.
+    columns = -(-count // -(-count // min(max(fitting, 1), count)))
+    width = (available - gap * (columns - 1)) / columns
     for index in range(count):
-        if index:
-            imgui.same_line(0, gap)
+        imgui.same_line(0, gap) if index % columns else imgui.set_cursor_pos_x(left)
         yield width
 
 
@@ -254,7 +261,9 @@ def option_buttons(
     chosen = None
     palette = look.palette
     imgui.push_id(name)
-    widths = split_line(len(options), 0.12 * look.em, room=room)
+    widest = max(imgui.calc_text_size(text).x for _value, text in options)
+    widest += 2 * TIGHT * imgui.get_font_size()
+    widths = split_line(len(options), 0.12 * look.em, room=room, widest=widest)
     for (value, text), width in zip(options, widths, strict=True):
         is_current = value == current
         imgui.push_style_color(imgui.Col_.button, palette.pressed if is_current else palette.raised)

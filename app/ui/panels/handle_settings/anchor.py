@@ -35,7 +35,7 @@ def draw_anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Acti
     if reason is None and chosen[0].position == layer.anchor:
         reason = _("In-betweens turn around this handle already.")
     halves, actions = split_line(2), list[Action]()
-    text = f"{icons.ICON_FA_ANCHOR}  {_('Follow this handle')}###anchor here"
+    text = f"{icons.ICON_FA_ANCHOR}  {_('Follow handle')}###anchor here"
     hint, keys = _("Let in-betweens turn around this point"), format_modified(CTRL, _("click"))
     if text_button(text, next(halves), hint, keys, reason=reason):
         actions.append(do(toggle_anchor_at_handle, chosen[0].id))
