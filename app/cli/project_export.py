@@ -128,17 +128,19 @@ def _summary_of_frames(plan: ExportPlan) -> str:
 
 def _summary_of_shapes(maker: MeshExport, plan: ExportPlan) -> str:
     first, last = plan.span
-    shapes = [
-        ngettext(
-            "{count} shape of {vertices:,} vertices within {error:.2g} pixels of the motion",
-            "{count} shapes of {vertices:,} vertices within {error:.2g} pixels of the motion",
-            len(shape.motion.targets),
-        ).format(count=len(shape.motion.targets), vertices=len(shape.uv), error=shape.motion.error)
-        for shape in maker.meshes
-    ]
-    return _("{path}: {shapes}; {seconds:g} s, {size:,.0f} KB").format(
+    count = sum(len(shape.motion.targets) for shape in maker.meshes)
+    text = ngettext(
+        "{path}: {count} shape of {vertices:,} vertices within {error:.2g} pixels of the motion; "
+        "{seconds:g} s, {size:,.0f} KB",
+        "{path}: {count} shapes of {vertices:,} vertices within {error:.2g} pixels of the motion; "
+        "{seconds:g} s, {size:,.0f} KB",
+        count,
+    )
+    return text.format(
         path=plan.out,
-        shapes="; ".join(shapes),
+        count=count,
+        vertices=sum(len(shape.uv) for shape in maker.meshes),
+        error=max(shape.motion.error for shape in maker.meshes),
         seconds=round((last - first) / plan.timeline_fps, 2),
         size=plan.out.stat().st_size / 1000,
     )

@@ -140,11 +140,12 @@ frame on. With "keep" nothing jumps then, and "at" may be left out. "to": null d
 
    "attach": [{"to": "hand A", "at": [310, 240]}, {"frame": 80, "to": "hand B", "keep": true}]
 
-Layers without an entry stand still. "visible" lists the frames from which a layer is visible or
-not; it also shows layers that are hidden in DRAWING. "choices" are switches: exactly one of their
-layers is visible, from the frame on that the key names. In place of a layer, a switch may have a
-group by its path ("mouth/happy"), which switches as one; its layers may have "visible" and switches
-of their own. A layer is in one switch only, and has no "visible" then.
+Layers without an entry stand still. An entry may leave out handles and keys. "visible" lists the
+frames from which a layer is visible or not; it also shows layers that are hidden in DRAWING.
+"choices" are switches: exactly one of their layers is visible, from the frame on that the key
+names. In place of a layer, a switch may have a group by its path ("mouth/happy"), which switches as
+one; its layers may have "visible" and switches of their own. A layer is in one switch only, and has
+no "visible" then.
 
 The camera and its canvas are at the top of the script:
 

@@ -65,6 +65,8 @@ MOVING_FIELDS = (
 OWN_FIELDS = ("anchor", "handles", "bones", *MOVING_FIELDS, "stiff")
 STAGE_FIELDS = ("layers", "choices", "bones")
 LAYER_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
+# What an entry of a layer may leave out, such as a mouth that moves with its parent.
+RESTING: Mapping[str, object] = {"handles": {}, "keys": [{"frame": 0}]}
 HANDLE_FIELDS = ("at", "front", "extent", "still")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
 NO_VARIANT = N_("{where}variant must be one of {variants}, not {content}")
@@ -171,8 +173,8 @@ def parse_pose_script(content: object) -> PoseScript:
     layers = [] if "layers" in script else [_layer(script, "", usual, loop=loop)]
     for index, entry in enumerate(as_list(script.get("layers", []), "layers")):
         where = f"layers[{index}]."
-        fields = read_fields(entry, where[:-1], LAYER_FIELDS)
-        layers.append(_layer(fields, where, usual, loop=loop))
+        own_fields = {**RESTING, **read_fields(entry, where[:-1], LAYER_FIELDS)}
+        layers.append(_layer(as_object(own_fields, where[:-1]), where, usual, loop=loop))
     names = [layer.layer for layer in layers]
     check_distinct_layers(names)
     if not layers:

@@ -378,6 +378,9 @@ def test_a_script_of_several_layers():
         (VISIBILITY.name, None): (VISIBILITY.key(0, value=True), VISIBILITY.key(12, value=False)),
         (DEPTH.name, "hand"): (DEPTH.key(9, -1.0),),
     }
+    # A mouth that moves with its parent needs neither handles nor keys.
+    without = {name: value for name, value in BODY.items() if name not in {"handles", "keys"}}
+    assert parse_pose_script({**SCENE, "layers": [without, ARM]}).layers == script.layers
     # In a loop, the last depth holds before the first pose, and the first pose ends it.
     _, arm = parse_pose_script({**SCENE, "loop": True}).layers
     assert arm.channels[DEPTH.name, "hand"] == (DEPTH.key(0, 0.5), DEPTH.key(9, -1.0))
