@@ -226,6 +226,7 @@ from app.document.queries.layers.layer_bones import (
     bones_above as bones_above,
     layers_with_targets as layers_with_targets,
     limb_ends as limb_ends,
+    shared_bone as shared_bone,
 )
 from app.document.queries.layers.layer_tree import (
     TreeRow as TreeRow,

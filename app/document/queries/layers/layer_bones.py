@@ -40,6 +40,18 @@ def limb_ends(document: Document, layer: int) -> tuple[Layer, ...]:
     )
 
 
+def shared_bone(document: Document, layer: int, frame: float) -> tuple[Layer, Layer] | None:
+    """Return a bone of a layer with an IK target that another such layer bends, and that layer."""
+    own = bones_above(document, layer, frame)
+    for end in layers_with_targets(document) if document.layer(layer).keys_of(IK_TARGET) else ():
+        if end.id == layer:
+            continue
+        for bone in bones_above(document, end.id, frame):
+            if bone in own:
+                return bone, end
+    return None
+
+
 def _children(document: Document) -> dict[int, set[int]]:
     """Return the ids of all layers that have a layer as parent at some frame, by its id."""
     children: dict[int, set[int]] = {}

@@ -21,6 +21,7 @@ from app.document import (
     Quantity,
     Transform,
     bones_above,
+    shared_bone,
     value_at,
 )
 from app.editor import Action, do
@@ -99,6 +100,12 @@ def draw_ik_target(document: Document, look: Look, layer: Layer, frame: int) -> 
         ]
         imgui.end_combo()
     draw_tooltip(_("How many parents bend when you pull the layer with the tool Move"))
+    if shared := shared_bone(document, layer.id, frame):
+        bone, other = shared
+        text = _(
+            "{name} also bends for {other}, so one of them misses its IK target. Bend fewer parents."
+        )
+        small_text(look, text.format(name=bone.name, other=other.name))
     if not bones:
         return actions
     channel, keys = Channel(IK_TARGET, layer.id), layer.keys_of(IK_TARGET)

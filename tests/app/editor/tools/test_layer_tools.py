@@ -8,7 +8,15 @@ import pytest
 from animations import round_document
 from sessions import run_update_steps, session_of, settle
 
-from app.document import IK_TARGET, TRANSFORM, Channel, Transform, joint_commands, shape_commands
+from app.document import (
+    IK_TARGET,
+    TRANSFORM,
+    Channel,
+    Transform,
+    joint_commands,
+    shape_commands,
+    shared_bone,
+)
 from app.editor.actions import editing, playback
 from app.editor.actions.timing.channel_keys import set_channel_value
 from app.editor.layering import layer_posing
@@ -285,3 +293,17 @@ def test_anchor_of_a_turned_root_moves_without_the_picture(session):
     settle(session)
     for one, other in zip(before, placements(session), strict=True):
         np.testing.assert_allclose(one, other, rtol=0, atol=1e-9)
+
+
+def test_bone_of_two_planted_layers_is_named(session):
+    for layer in (FOOT, SHIN):
+        set_active_layer(session, layer)
+        session.project.history.do(joint_commands.set_ik_parents(layer, 2))
+        settle(session)
+        layer_posing.plant_layer(session)
+        settle(session)
+    found = shared_bone(session.project.document, FOOT, 0)
+    assert found is not None
+    assert [each.id for each in found] == [THIGH, SHIN]
+    session.project.history.do(joint_commands.set_ik_parents(FOOT, 1))
+    assert shared_bone(session.project.document, FOOT, 0) is None
