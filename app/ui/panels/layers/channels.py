@@ -102,9 +102,7 @@ def draw_ik_target(document: Document, look: Look, layer: Layer, frame: int) -> 
     draw_tooltip(_("How many parents bend when you pull the layer with the tool Move"))
     if shared := shared_bone(document, layer.id, frame):
         bone, other = shared
-        text = _(
-            "{name} also bends for {other}, so one of them misses its IK target. Bend fewer parents."
-        )
+        text = _("{name} also bends for {other}: one of the two misses its IK target. Bend fewer.")
         small_text(look, text.format(name=bone.name, other=other.name))
     if not bones:
         return actions
