@@ -21,7 +21,7 @@ from app.editor.actions.project_files import files, saving
 from app.editor.parts.settings import SessionSettings
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.tools.rotate_tool import RING
+from app.editor.tools.transform_tools.rotate_tool import RING
 from app.editor.work.jobs import Jobs
 from app.motion import CorrectedFrames
 from app.render.gpu.context import create_context

@@ -17,7 +17,7 @@ class AnchorTool(Tool):
 
     @classmethod
     def hints(cls, _session: Session, _project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        if spot.on_ring:
+        if spot.on_gizmo:
             return ()
         if spot.handle is not None:
             return (Hint(_("click to place the anchor"), "ctrl"),)
@@ -30,7 +30,7 @@ class AnchorTool(Tool):
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Set the anchor where the shape is pressed; a press on the anchor's handle resets it."""
-        if not spot.ctrl or spot.on_ring or not (spot.on_shape or spot.handle is not None):
+        if not spot.ctrl or spot.on_gizmo or not (spot.on_shape or spot.handle is not None):
             return None
         anchoring = cls(project=project)
         if spot.handle is not None:

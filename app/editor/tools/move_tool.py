@@ -97,7 +97,7 @@ def nudge_layer(session: Session, project: Project, step: complex) -> None:
 
 
 def _is_beside(spot: PointerHit) -> bool:
-    return spot.handle is None and not (spot.on_shape or spot.on_ring)
+    return spot.handle is None and not (spot.on_shape or spot.on_gizmo)
 
 
 def _root_parent(session: Session, project: Project, layer: int | None) -> Layer:

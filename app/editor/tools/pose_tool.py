@@ -68,7 +68,7 @@ class PoseTool(Tool):
             text = _("drag to move the key at frame {frame}")
             return (Hint(text.format(frame=spot.track_key)),)
         adds = spot.on_shape and session.display.overlays.handles and not project.layer.still
-        is_used = spot.on_ring or pressed_other_layer(project, spot) is not None
+        is_used = spot.on_gizmo or pressed_other_layer(project, spot) is not None
         if adds and not (is_used or session.tools.mode == "record"):
             return (Hint(_("click to add a handle")),)
         return ()
@@ -76,7 +76,7 @@ class PoseTool(Tool):
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Grab a handle with all selected handles, or add a handle."""
-        if spot.ctrl or spot.shift or spot.on_ring:
+        if spot.ctrl or spot.shift or spot.on_gizmo:
             return None
         if spot.handle is not None:
             return None if spot.alt else cls._take(session, project, spot, spot.handle)

@@ -26,14 +26,14 @@ class SelectTool(Tool):
 
     @classmethod
     def hints(cls, _session: Session, _project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        is_free = spot.handle is None and not spot.on_shape and not spot.on_ring
+        is_free = spot.handle is None and not spot.on_shape and not spot.on_gizmo
         return (Hint(_("drag to select")),) if is_free else ()
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Begin a box; with Shift on a handle, add it to the selection or remove it."""
         has_box, at = spot.handle is None, spot.place
-        if spot.on_ring or not (has_box or spot.shift):
+        if spot.on_gizmo or not (has_box or spot.shift):
             return None
         selecting = cls(project=project, start=at, place=at, adds=spot.shift, has_box=has_box)
         if spot.handle is not None:
@@ -108,6 +108,6 @@ class PickLayerTool(Tool):
 
 def pressed_other_layer(project: Project, spot: PointerHit) -> int | None:
     """Return the layer that a press selects, if it is not the active layer."""
-    if spot.handle is not None or spot.on_ring or spot.ctrl or spot.shift:
+    if spot.handle is not None or spot.on_gizmo or spot.ctrl or spot.shift:
         return None
     return None if spot.layer in {None, project.selection.active} else spot.layer

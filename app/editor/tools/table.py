@@ -14,9 +14,9 @@ from app.editor.tools.layer_tools.pull_tool import JointGripTool, PullTool
 from app.editor.tools.mirror_axis_tool import MirrorAxisTool
 from app.editor.tools.move_tool import MoveTool
 from app.editor.tools.pose_tool import PoseTool
-from app.editor.tools.rotate_tool import RotateTool
 from app.editor.tools.select_tools import PickLayerTool, SelectTool
 from app.editor.tools.tool import PointerHit, Tool
+from app.editor.tools.transform_tools.rotate_tool import RotateTool
 from app.editor.work.motion_setup import MotionSetup
 
 # The first tool that takes a press gets it; hints are shown in this order.

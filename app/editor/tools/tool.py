@@ -27,7 +27,7 @@ class PointerHit:
     track_key: int | None = None  # frame of the key under it, on the selected track's path
     on_axis: bool = False  # on the grip of the mirror axis
     on_anchor: bool = False  # on the anchor of the active layer
-    on_ring: bool = False  # on the ring around the selected handle
+    on_gizmo: bool = False  # on the ring around the selected handle
     on_shape: bool = False  # on the active layer
     # The visible layer there; with Alt held, the next one behind the active layer.
     layer: int | None = None

@@ -22,9 +22,9 @@ from app.editor.layering.layer_selection import reset_tree_rows
 from app.editor.poses import copying, pasting
 from app.editor.tools import move_tool, tool_pointer
 from app.editor.tools.edit_tools.stiffness_tools import layer_bones
-from app.editor.tools.rotate_tool import is_on_ring
 from app.editor.tools.table import pointed_tool, tools_of
 from app.editor.tools.tool import PointerHit
+from app.editor.tools.transform_tools.rotate_tool import is_on_ring
 from app.texts import _
 from app.ui.panel import is_in_front
 from app.ui.shortcuts.keys import ALT, CTRL, format_modified
@@ -109,10 +109,10 @@ def draw_viewport_panel(
     on_canvas = imgui.is_item_hovered()
     is_over = on_canvas or axis.is_hot or not handles.hovered is track_key is None
     spot = screen.hit_test(look, handles.hovered, on_axis=axis.is_hot)
-    on_ring = on_canvas and handles.hovered is None
-    on_ring = on_ring and is_on_ring(session, project, spot.place, spot.em)
+    on_gizmo = on_canvas and handles.hovered is None
+    on_gizmo = on_gizmo and is_on_ring(session, project, spot.place, spot.em)
     spot = replace(
-        spot, at_target=handles.at_target, track_key=track_key, on_ring=on_ring, is_over=is_over
+        spot, at_target=handles.at_target, track_key=track_key, on_gizmo=on_gizmo, is_over=is_over
     )
     if handles.is_pressed or is_key_pressed or axis.is_pressed or _is_canvas_pressed():
         actions.append(do(tool_pointer.press_pointer, spot))

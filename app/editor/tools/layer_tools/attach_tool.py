@@ -109,5 +109,5 @@ class AttachTool(Tool):
 
 def _takes_anchor(session: Session, project: Project, spot: PointerHit) -> bool:
     """Return whether a press grabs the anchor of a layer, in a scene of several layers."""
-    is_free = not (spot.shift or spot.alt or spot.on_ring) and session.display.overlays.handles
+    is_free = not (spot.shift or spot.alt or spot.on_gizmo) and session.display.overlays.handles
     return spot.on_anchor and is_free and len(project.document.layers) > 1

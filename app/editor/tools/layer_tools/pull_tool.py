@@ -22,8 +22,8 @@ from app.editor.parts.tools import Hint
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.tools.numeric_entry import NumericEntry
-from app.editor.tools.rotate_tool import BAND, KNOB, RING, STEP
 from app.editor.tools.tool import PointerHit, Tool, to_scene
+from app.editor.tools.transform_tools.rotate_tool import BAND, KNOB, RING, STEP
 from app.motion import LayerPull
 from app.texts import _
 

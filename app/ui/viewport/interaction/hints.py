@@ -50,7 +50,7 @@ def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
         if spot.handle in find_auto_pinned(screen.shown):
             hints.append(_("auto-pinned: it stays until the next key"))
         return f"{screen.shown.clip.layer.handle(spot.handle).name}: {', '.join(hints)}"
-    if not (spot.on_shape or spot.on_ring):
+    if not (spot.on_shape or spot.on_gizmo):
         hints += [_("wheel to zoom"), _("middle drag to move the view")]
     return _sentence(hints)
 

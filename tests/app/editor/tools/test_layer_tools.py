@@ -25,8 +25,8 @@ from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import attach_layer, detach_layer
 from app.editor.tools import move_tool, tool_pointer
 from app.editor.tools.layer_tools.pull_tool import GRIP_ANGLE
-from app.editor.tools.rotate_tool import RING
 from app.editor.tools.tool import PointerHit
+from app.editor.tools.transform_tools.rotate_tool import RING
 
 HIP, KNEE, ANKLE = 40 + 70j, 60 + 45j, 80 + 25j
 BODY, THIGH, SHIN, FOOT = range(4)

@@ -62,7 +62,7 @@ def state(project):
 
 AT_LEFT, AT_RIGHT = PointerHit(place=LEFT, handle=0), PointerHit(place=RIGHT, handle=1)
 ON_SHAPE, BESIDE = PointerHit(place=FREE, on_shape=True), PointerHit(place=5 + 5j)
-ON_RING = PointerHit(place=LEFT + 20, on_shape=True, on_ring=True)
+ON_RING = PointerHit(place=LEFT + 20, on_shape=True, on_gizmo=True)
 
 
 @pytest.mark.parametrize(

@@ -57,7 +57,7 @@ class RotateTool(Tool):
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        if spot.on_ring:
+        if spot.on_gizmo:
             (handle,) = project.selection.handles
             is_alone = draggable_track(project, handle) is not None
             text = _("drag to turn the shape around the handle")
@@ -73,7 +73,7 @@ class RotateTool(Tool):
         """Grab the ring around the selected handle, or a handle with Alt."""
         shown = project.layer_runtime.shown
         is_by_key = spot.handle is not None and spot.alt and not (spot.ctrl or spot.shift)
-        is_by_ring = spot.on_ring and len(project.selection.handles) == 1
+        is_by_ring = spot.on_gizmo and len(project.selection.handles) == 1
         if shown is None or not (is_by_key or is_by_ring):
             return None
         handle = spot.handle if is_by_key else next(iter(project.selection.handles))
@@ -149,7 +149,7 @@ class RotateTool(Tool):
     ) -> Iterable[OverlayShape]:
         """Return the ring around the only selected handle, with a knob at the shape's top."""
         found = find_ring(session, project) if session.tools.active_tool is None else None
-        return () if found is None else _ring(*found, spot.em, is_hot=spot.on_ring)
+        return () if found is None else _ring(*found, spot.em, is_hot=spot.on_gizmo)
 
     def shapes(self, _place: complex, em: float) -> Iterable[OverlayShape]:
         """Return the dragged ring with its angle, and the typed text."""
