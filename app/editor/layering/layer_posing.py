@@ -30,6 +30,16 @@ def find_pull(session: Session, project: Project, layer: int) -> LayerPull | Non
     return project.evaluator.pull(project.document, layer, frame)
 
 
+def tell_if_planted(session: Session, pull: LayerPull) -> bool:
+    """Show a notice if an IK target bends the layer, so that it cannot turn by itself."""
+    end = pull.planted_end
+    if end is not None:
+        text = _("{layer} bends to the IK target of {end}. Drag {end}, or release it first.")
+        name = pull.document.layer(pull.layer).name
+        session.notices.show(text.format(layer=name, end=end.name), topic="planted")
+    return end is not None
+
+
 @with_project
 def set_transforms(
     session: Session,

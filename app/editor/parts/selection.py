@@ -26,6 +26,8 @@ class Selection(Revised):
     # Channels without selected keys are left out.
     keys: KeysByChannel = field(default_factory=dict)
     channel: Channel[Any] | None = None  # None for the poses
+    # The moved pivot of the box around handles or a layer, in the scene; None where it is by itself
+    pivot: complex | None = None
 
     @property
     def frames(self) -> frozenset[int]:
@@ -47,7 +49,7 @@ class Selection(Revised):
         """Make a layer active and select it alone; of another layer, nothing else is selected."""
         self.other_layers = frozenset()
         if layer != self.active:
-            self.active, self.channel = layer, None
+            self.active, self.channel, self.pivot = layer, None, None
             self.clear()
 
     def select_other_layers(self, layers: frozenset[int]) -> None:
@@ -55,11 +57,22 @@ class Selection(Revised):
         self.other_layers = layers - {self.active}
 
     def select_handles(self, handles: frozenset[int]) -> None:
-        """Select these handles, and no keys."""
+        """Select these handles, and no keys; the pivot of other handles is forgotten."""
+        if handles != self.handles:
+            self.pivot = None
         self.handles, self.keys = handles, {}
 
     def deselect_handles(self, handles: frozenset[int]) -> None:
         self.handles -= handles
+
+    def set_pivot(self, pivot: complex | None) -> None:
+        """Move the pivot of the box to a place in the scene, or put it back."""
+        self.pivot = pivot
+
+    def move_pivot(self, way: complex) -> None:
+        """Move a moved pivot along with the selected things."""
+        if self.pivot is not None:
+            self.pivot += way
 
     def select_keys(self, keys: KeysByChannel) -> None:
         """Select these keys, and no handles."""

@@ -50,6 +50,10 @@ class ActiveTool(Protocol):
     def snaps(self) -> bool:
         """Whether it moves in steps while Ctrl is held."""
 
+    @property
+    def snaps_by_shift(self) -> bool:
+        """Whether it moves in steps while Shift is held."""
+
     def shapes(self, place: complex, em: float) -> Iterable[OverlayShape]:
         """Return what the tool draws over the drawing, with the pointer at a place."""
 

@@ -33,6 +33,12 @@ class NumericEntry:
             elif re.fullmatch(r"-?\d*\.?\d*", self.text + character) and len(self.text) < LONGEST:
                 self.text += character
 
+    def type_number(self, characters: str) -> float | None:
+        """Add typed characters but no axis, and return the number, if any."""
+        self.type(characters)
+        self.axis = ""
+        return self.value
+
     @property
     def value(self) -> float | None:
         """The number; None if no number is typed."""

@@ -31,7 +31,7 @@ from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.select_tools import pressed_other_layer
-from app.editor.tools.tool import PointerHit, Tool, to_scene
+from app.editor.tools.tool import PointerHit, Tool, movable_handles, to_scene
 from app.editor.work.drag_session import DragStart
 from app.texts import _
 from engine.deform import BoundedPull
@@ -100,7 +100,7 @@ class PoseTool(Tool):
         pulling = cls(project=project, start=spot.place, taken=handle, at_target=spot.at_target)
         if handle not in project.selection.handles:
             editing.select_handles(session, project.layer.grouped_handles(handle))
-        pulling.dragged = _movable_handles(project)
+        pulling.dragged = movable_handles(project)
         if handle in pulling.dragged:
             pulling._take_to_track(session, handle)
         return pulling
@@ -191,6 +191,9 @@ class PoseTool(Tool):
             release_drag_forced(session)
         else:
             self.project.history.release(self)
+        shown = self.project.layer_runtime.shown
+        if self.moved and self.tracked is None and shown is not None:
+            self.project.selection.move_pivot(self.offset * shown.placement.factor)
         if not self.moved and self.taken is not None:
             editing.select_handles(session, self.project.layer.grouped_handles(self.taken))
 
@@ -217,9 +220,3 @@ class PoseTool(Tool):
         if self.tracked is not None:
             return typed
         return (*typed, Hint(_("let go to keep the target where the pointer is"), "alt"))
-
-
-def _movable_handles(project: Project) -> frozenset[int]:
-    """Return the selected handles that are not locked."""
-    handles = project.layer.handles
-    return frozenset(h.id for h in handles if h.id in project.selection.handles and not h.locked)

@@ -27,10 +27,11 @@ class PointerHit:
     track_key: int | None = None  # frame of the key under it, on the selected track's path
     on_axis: bool = False  # on the grip of the mirror axis
     on_anchor: bool = False  # on the anchor of the active layer
-    on_gizmo: bool = False  # on the ring around the selected handle
+    on_gizmo: bool = False  # on the ring around a handle, or on a grip of the box
     on_shape: bool = False  # on the active layer
     # The visible layer there; with Alt held, the next one behind the active layer.
     layer: int | None = None
+    is_double: bool = False  # whether it is the second press of a double click
     ctrl: bool = False  # whether the modifier keys are held
     shift: bool = False
     alt: bool = False
@@ -55,6 +56,7 @@ class Tool(ABC):
 
     cursor: ClassVar[Cursor] = "arrow"
     snaps: ClassVar[bool] = False  # whether it moves in steps while Ctrl is held
+    snaps_by_shift: ClassVar[bool] = False  # whether it does so while Shift is held, too
     project: Project
     before: SelectionSnapshot = field(init=False)
 
@@ -72,6 +74,11 @@ class Tool(ABC):
     ) -> Iterable[OverlayShape]:
         """Return what is always drawn over the drawing while the tool can be used."""
         return ()
+
+    @classmethod
+    def has_gizmo_at(cls, _session: Session, _project: Project, _spot: PointerHit) -> bool:
+        """Return whether what the tool draws can be grabbed at a place."""
+        return False
 
     @classmethod
     @abstractmethod
@@ -131,3 +138,9 @@ def handle_places(project: Project) -> dict[int, complex]:
         return {}
     places = shown.handle_positions.tolist()
     return {each.id: at for each, at in zip(shown.clip.layer.handles, places, strict=True)}
+
+
+def movable_handles(project: Project) -> frozenset[int]:
+    """Return the selected handles that are not locked."""
+    handles = project.layer.handles
+    return frozenset(h.id for h in handles if h.id in project.selection.handles and not h.locked)

@@ -7,6 +7,7 @@ import numpy as np
 
 from app.document import (
     IK_TARGET,
+    MAX_SCALE,
     TRANSFORM,
     Document,
     IkTarget,
@@ -105,7 +106,7 @@ class LayerPull:
         """
         own, bones = self.document.layer(self.layer), self.bones
         if alone or not bones:
-            return self.turned(_angle(grabbed - self.joint, goal - self.joint))
+            return self.transformed(_angle(grabbed - self.joint, goal - self.joint))
         if len(bones) > 1:
             place = self.joint + goal - grabbed
             target = replace(self.present_target(), place=place)
@@ -148,20 +149,26 @@ class LayerPull:
         places = [self._place(each.id, self._turns)[1] for each in layers]
         return choose_side(layers[-1], layers[:-1], places)
 
-    def turned(self, turn: float) -> dict[int, Transform]:
-        """Return the layer's transform, turned at its joint by an angle in radians."""
-        if not self._has_joint:
-            own = self._transform(self.layer)
-            return self._about_anchor(replace(own, turn=own.turn + turn))
-        return self._with({**self._turns, self.layer: self._turns.get(self.layer, 0.0) + turn})
+    def transformed(
+        self, turn: float, factor: float = 1.0, pivot: complex | None = None
+    ) -> dict[int, Transform]:
+        """Return the layer's transform, turned and scaled around a pivot, by default the joint.
 
-    def scaled(self, factor: float) -> dict[int, Transform]:
-        """Return the layer's transform, scaled at its joint."""
+        `turn` is in radians; the scale stays within the limits of keys.
+        """
         own = self._transform(self.layer)
-        scaled = replace(own, scale=own.scale * factor)
-        return {self.layer: scaled} if self._has_joint else self._about_anchor(scaled)
+        scale = min(max(own.scale * factor, 1 / MAX_SCALE), MAX_SCALE)
+        changed = replace(own, turn=own.turn + turn, scale=scale)
+        if not self._has_joint:
+            changed = self._about_anchor(changed)
+        if pivot is not None:
+            # The turn around the joint, then the way that brings the pivot back.
+            arm = pivot - self.joint
+            way = arm * (1 - scale / own.scale * cmath.exp(1j * turn))
+            changed = replace(changed, shift=changed.shift + way / self._axes)
+        return {self.layer: changed}
 
-    def _about_anchor(self, changed: Transform) -> dict[int, Transform]:
+    def _about_anchor(self, changed: Transform) -> Transform:
         """Return a changed transform of a layer without a parent; its posed anchor stays.
 
         The transform is about the pivot, and a pose may move the anchor away from there.
@@ -169,15 +176,19 @@ class LayerPull:
         arm = self._posed_anchor - self.document.layer(self.layer).pivot
         own = self._transform(self.layer)
         shift = own.shift + (own.factor - changed.factor) * arm
-        return {self.layer: replace(changed, shift=shift)}
+        return replace(changed, shift=shift)
 
     def moved(self, way: complex) -> dict[int, Transform]:
         """Return the layer's transform, moved in the scene, away from its joint."""
         own = self._transform(self.layer)
-        # The shift is in the axes of the joint, which the layer's own transform does not turn.
+        return {self.layer: replace(own, shift=own.shift + way / self._axes)}
+
+    @property
+    def _axes(self) -> complex:
+        """The axes of the shift: those of the joint, which the layer's own transform keeps."""
+        own = self._transform(self.layer)
         axes = self.placement.factor / replace(own, shift=0j).factor
-        axes *= cmath.exp(-1j * self._turns.get(self.layer, 0.0))
-        return {self.layer: replace(own, shift=own.shift + way / axes)}
+        return axes * cmath.exp(-1j * self._turns.get(self.layer, 0.0))
 
     @property
     def _at(self) -> float:

@@ -3,6 +3,7 @@
 A key acts by the character that it types, as well as by its place on the keyboard.
 """
 
+import math
 from collections.abc import Callable
 
 from imgui_bundle import imgui
@@ -11,12 +12,15 @@ from app.editor import Action, Session, do
 from app.editor.actions import dialog_actions, playback, viewing
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.tools import move_tool
+from app.editor.tools.transform_tools.handle_box_tool import change_handles_by_key
+from app.editor.tools.transform_tools.layer_box_tool import change_layer_by_key
 from app.ui.shortcuts.keys import CTRL, PRESSED_KEYS, SIGNS, chords_of
 from app.ui.shortcuts.table import ACTIONS, ENDED_BY_ESC
 
 Key = imgui.Key
 MODIFIERS = int(imgui.Key.mod_mask_)
-ARROWS = {Key.left_arrow: -1, Key.right_arrow: 1, Key.up_arrow: 1j, Key.down_arrow: -1j}
+ARROWS = {Key.left_arrow: -1 + 0j, Key.right_arrow: 1 + 0j, Key.up_arrow: 1j, Key.down_arrow: -1j}
+TURN, GROWTH = math.radians(1.0), 1.01  # of a selection, per press of Ctrl and an arrow
 PLUS = int(Key.equal)  # the key of + on English keyboards
 
 
@@ -120,13 +124,17 @@ def _nudges(session: Session) -> list[Action]:
         return []
     if not (is_moving or session.project.selection.handles):
         return []
+    io = imgui.get_io()
+    pressed = [way for key, way in ARROWS.items() if imgui.is_key_pressed(key)]
+    if io.key_ctrl:
+        change = change_layer_by_key if is_moving else change_handles_by_key
+        times = 10.0 if io.key_shift else 1.0
+        return [
+            do(change, -TURN * times * way.real, GROWTH ** (times * way.imag)) for way in pressed
+        ]
     nudge = move_tool.nudge_layer if is_moving else nudge_handles
-    step = 10.0 if imgui.get_io().key_shift else 1.0
-    return [
-        do(nudge, step * direction)
-        for key, direction in ARROWS.items()
-        if imgui.is_key_pressed(key)
-    ]
+    step = 10.0 if io.key_shift else 1.0
+    return [do(nudge, step * way) for way in pressed]
 
 
 def _space(session: Session) -> list[Action]:

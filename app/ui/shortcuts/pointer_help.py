@@ -19,7 +19,9 @@ POINTER_HELP = (
     PointerHelp(format_modified(ALT, _("let go of a handle")), _("Keep the target there")),
     PointerHelp(_("Drag the ring around a handle"), _("Turn the shape there")),
     PointerHelp(format_modified(ALT, _("drag a handle")), _("Turn the shape there")),
-    PointerHelp(format_modified(CTRL, _("turn")), _("Turn in steps of 15°")),
+    PointerHelp(_("Drag a grip of the box"), _("Turn or scale several handles, or a layer")),
+    PointerHelp(_("Drag the cross in the box"), _("Move the pivot; the picture stays")),
+    PointerHelp(format_modified(SHIFT, _("drag a grip")), _("Steps of 15°, same proportions")),
     PointerHelp(_("Type a number in a drag, Enter"), _("By pixels or degrees")),
     PointerHelp(_("X or Y in a drag"), _("Lock to an axis")),
     PointerHelp(format_modified(ALT, _("click a handle")), _("Delete it")),
@@ -33,6 +35,9 @@ POINTER_HELP = (
     ),
     PointerHelp(_("Right-click a handle"), _("Menu")),
     PointerHelp(_("Arrows, with Shift ×10"), _("Nudge the selection, or the whole layer")),
+    PointerHelp(
+        format_modified(CTRL, _("arrows, with Shift ×10")), _("Turn and scale the selection")
+    ),
     PointerHelp(_("Middle drag, or Space and drag"), _("Move the view")),
     PointerHelp(_("Wheel"), _("Zoom at the pointer")),
     PointerHelp(_("Esc"), _("Cancel a drag")),

@@ -32,8 +32,8 @@ class ScreenMapping:
 
     @property
     def scale(self) -> float:
-        """Pixels of the screen per pixel of the picture."""
-        return self.view.scale / self.density
+        """Pixels of the screen per pixel of the active layer."""
+        return self.view.scale / self.density * abs(self.shown.placement.factor)
 
     @property
     def pointer(self) -> complex:
@@ -73,6 +73,7 @@ class ScreenMapping:
             on_anchor=self._is_anchor(handle, place, GRIP * look.em / self.scale),
             on_shape=bool(contains(outline, np.array([self._in_scene]), holes=holes)[0]),
             layer=self._layer(through=io.key_alt),
+            is_double=imgui.is_mouse_double_clicked(imgui.MouseButton_.left),
             ctrl=io.key_ctrl,
             shift=io.key_shift,
             alt=io.key_alt,

@@ -22,9 +22,8 @@ from app.editor.layering.layer_selection import reset_tree_rows
 from app.editor.poses import copying, pasting
 from app.editor.tools import move_tool, tool_pointer
 from app.editor.tools.edit_tools.stiffness_tools import layer_bones
-from app.editor.tools.table import pointed_tool, tools_of
+from app.editor.tools.table import is_on_gizmo, pointed_tool, tools_of
 from app.editor.tools.tool import PointerHit
-from app.editor.tools.transform_tools.rotate_tool import is_on_ring
 from app.texts import _
 from app.ui.panel import is_in_front
 from app.ui.shortcuts.keys import ALT, CTRL, format_modified
@@ -109,8 +108,7 @@ def draw_viewport_panel(
     on_canvas = imgui.is_item_hovered()
     is_over = on_canvas or axis.is_hot or not handles.hovered is track_key is None
     spot = screen.hit_test(look, handles.hovered, on_axis=axis.is_hot)
-    on_gizmo = on_canvas and handles.hovered is None
-    on_gizmo = on_gizmo and is_on_ring(session, project, spot.place, spot.em)
+    on_gizmo = on_canvas and handles.hovered is None and is_on_gizmo(session, project, spot)
     spot = replace(
         spot, at_target=handles.at_target, track_key=track_key, on_gizmo=on_gizmo, is_over=is_over
     )

@@ -215,7 +215,7 @@ def test_scaled_and_moved_layer_takes_its_children_along():
     document = limb_chain()
     pull = pull_of(document, 2, 20)
     moved = document
-    for change in (pull.scaled(1.5), pull.moved(7 - 2j)):
+    for change in (pull.transformed(0.0, 1.5), pull.moved(7 - 2j)):
         keys = (TRANSFORM.key(20, change[2]),)
         moved = document.with_layer(document.layer(2).with_keys_of(TRANSFORM, keys))
         joints = ParentTransforms(moved)

@@ -4,9 +4,8 @@ If the row of the handle's track is selected, the track is keyed and the pose st
 """
 
 import cmath
-import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Self
 
 from app.document import Target
@@ -29,12 +28,11 @@ from app.editor.overlay_shapes import (
 from app.editor.parts.tools import Hint
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool, handle_places
+from app.editor.tools.transform_tools.turning import Turning
 from app.editor.work.drag_session import DragStart
 from app.texts import _
 
-STEP = math.radians(15.0)  # step of a rotation that snaps
 RING, BAND, KNOB = 2.2, 0.5, 0.3  # em: radius of the ring, half its hit area, radius of its knob
 LEAST_ARM = 12.0  # screen pixels around a handle; a press within has no direction
 
@@ -45,19 +43,25 @@ class RotateTool(Tool):
 
     cursor = "hand"
     snaps = True
+    snaps_by_shift = True
     handle: int
-    centre: complex  # place of the handle
     start: complex  # place of the press
+    turning: Turning  # around the handle
     turn: float  # rotation of the shape there at the start, in radians
     on_track: bool  # whether the handle's track is keyed in place of the pose
     deletes: bool  # whether a click without a rotation deletes the handle
-    swept: float = 0.0  # rotation by the pointer, in radians
-    entry: NumericEntry = field(default_factory=NumericEntry)  # typed degrees
     moved: bool = False
 
     @classmethod
+    def has_gizmo_at(cls, session: Session, project: Project, spot: PointerHit) -> bool:
+        found = find_ring(session, project)
+        return found is not None and abs(abs(spot.place - found[0]) - RING * spot.em) < (
+            BAND * spot.em
+        )
+
+    @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        if spot.on_gizmo:
+        if spot.on_gizmo and len(project.selection.handles) == 1:
             (handle,) = project.selection.handles
             is_alone = draggable_track(project, handle) is not None
             text = _("drag to turn the shape around the handle")
@@ -84,45 +88,41 @@ class RotateTool(Tool):
         on_track = draggable_track(project, handle) is not None
         frame = playback.current_frame(session, project)
         target_angle = track_target_angle(project, handle, frame) if on_track else None
-        turning = cls(
+        centre = complex(shown.handle_positions[index])
+        rotating = cls(
             project=project,
             handle=handle,
-            centre=complex(shown.handle_positions[index]),
             start=spot.place,
+            turning=Turning(centre=centre, start=spot.place),
             turn=shown.handle_rotations[index] if target_angle is None else target_angle,
             on_track=on_track,
             deletes=is_by_key,
         )
         editing.select_handles(session, frozenset({handle}))
-        return turning
+        return rotating
 
     def move(self, session: Session, place: complex) -> None:
         """Rotate the shape by the pointer's angle around the handle; it may snap to steps."""
         if not (self.moved or self.is_away(session, self.start, place)):
             return
+        turning = self.turning
         if not self.moved:
-            arm = abs(self.start - self.centre) * self.project.view_on(session.display.screen).scale
-            if arm < LEAST_ARM:
+            scale = self.project.view_on(session.display.screen).scale
+            if abs(turning.start - turning.centre) * scale < LEAST_ARM:
                 # After a press this near, the rotation begins where the pointer leaves.
-                self.start = place
+                turning.start = place
         self.moved = True
-        swept = (place - self.centre) / (self.start - self.centre or 1)
-        if swept and self.entry.value is None:
-            angle = cmath.phase(swept)
-            self.swept = STEP * round(angle / STEP) if session.tools.is_snapping else angle
+        if turning.follow(place, snaps=session.tools.is_snapping):
             self._turn(session)
 
     def type(self, session: Session, characters: str) -> None:
         """Rotate the shape by the typed degrees."""
-        self.entry.type(characters)
-        self.entry.axis = ""
-        if self.entry.value is not None:
+        if self.turning.type(characters):
             self.moved = True
-            self.swept = math.radians(self.entry.value)
             self._turn(session)
 
     def _turn(self, session: Session) -> None:
-        handle, swept = self.handle, self.swept
+        handle, swept = self.handle, self.turning.angle
         if handle not in {each.id for each in self.project.layer.handles}:
             return
         if self.on_track:
@@ -153,27 +153,19 @@ class RotateTool(Tool):
 
     def shapes(self, _place: complex, em: float) -> Iterable[OverlayShape]:
         """Return the dragged ring with its angle, and the typed text."""
-        centre = handle_places(self.project).get(self.handle, self.centre)
-        turn = self.turn + self.swept
-        degrees = round(math.degrees(self.swept))
-        text = f"{degrees:+d}°".replace("-", "−") if degrees else "0°"
+        centre = handle_places(self.project).get(self.handle, self.turning.centre)
+        turn = self.turn + self.turning.angle
         top = centre + RING * em * cmath.exp(1j * turn) * 1j
         return [
             *_ring(centre, turn, em, is_hot=True),
             LineShape(points=[centre, top]),
-            TagShape(text=text, place=centre + (RING + 0.8) * em * 1j),
-            *self.entry.shapes(centre, "°"),
+            TagShape(text=self.turning.text, place=centre + (RING + 0.8) * em * 1j),
+            *self.turning.entry_shapes(centre),
         ]
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        return (Hint(_("turn in steps of 15°"), "ctrl"), Hint(_("type a number of degrees")))
-
-
-def is_on_ring(session: Session, project: Project, place: complex, em: float) -> bool:
-    """Return whether a place is on the ring around the selected handle."""
-    found = find_ring(session, project)
-    return found is not None and abs(abs(place - found[0]) - RING * em) < BAND * em
+        return (Hint(_("turn in steps of 15°"), "shift"), Hint(_("type a number of degrees")))
 
 
 def find_ring(session: Session, project: Project) -> tuple[complex, float] | None:

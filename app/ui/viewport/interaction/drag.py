@@ -23,15 +23,16 @@ def follow_pointer(session: Session, look: Look, screen: ScreenMapping) -> list[
     draw_shapes(look, screen, gesture.shapes(screen.pointer, look.em / screen.scale))
     io, pointer = imgui.get_io(), screen.pointer
     actions: list[Action] = []
+    snaps = io.key_ctrl or (gesture.snaps_by_shift and io.key_shift)
     # A Ctrl released after Ctrl+Z must not drag again if the tool takes no steps.
-    is_stepped = gesture.snaps and io.key_ctrl != session.tools.is_snapping
+    is_stepped = gesture.snaps and snaps != session.tools.is_snapping
     # A recording continues while the pointer rests.
     is_recorded = (
         screen.project.timeline.recording is not None
         and not screen.project.timeline.recording.is_over
     )
     if io.mouse_delta.x or io.mouse_delta.y or is_stepped or is_recorded:
-        move = tool_pointer.move_pointer_in_steps if io.key_ctrl else tool_pointer.move_pointer
+        move = tool_pointer.move_pointer_in_steps if snaps else tool_pointer.move_pointer
         actions.append(do(move, pointer))
     characters = _typed()
     if characters:

@@ -24,9 +24,11 @@ from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import attach_layer, detach_layer
 from app.editor.tools import move_tool, tool_pointer
-from app.editor.tools.layer_tools.pull_tool import GRIP_ANGLE
 from app.editor.tools.tool import PointerHit
-from app.editor.tools.transform_tools.rotate_tool import RING
+from app.editor.tools.transform_tools.layer_box_tool import (
+    change_layer_by_key,
+    find_layer_box,
+)
 
 HIP, KNEE, ANKLE = 40 + 70j, 60 + 45j, 80 + 25j
 BODY, THIGH, SHIN, FOOT = range(4)
@@ -128,30 +130,60 @@ def test_shift_moves_a_layer_off_its_joint(session):
     assert session.project.history.undo_label == "Move layer"
 
 
-def test_ring_turns_and_grip_scales_at_the_joint(session):
+def grab(session, kind, way=0j):
+    """Return a hit of a grip of the active layer's box, and the grip's place in the scene."""
+    shown = session.project.layer_runtime.shown.placement
+    box = find_layer_box(session, session.project, EM)
+    places = {"turn": box.knob_place(EM), "scale": box.place(way), "pivot": box.pivot}
+    spot = PointerHit(place=places[kind], on_gizmo=True, em=EM)
+    return spot, complex(shown.apply(np.array([places[kind]]))[0])
+
+
+def test_box_turns_and_scales_at_the_joint(session):
     set_active_layer(session, SHIN)
     settle(session)
-    top = KNEE + RING * EM * 1j
-    drag(session, PointerHit(place=top, em=EM), KNEE - RING * EM)
+    spot, at = grab(session, "turn")
+    drag(session, spot, KNEE + 1j * (at - KNEE))
     assert placements(session)[SHIN].factor == pytest.approx(1j, abs=1e-6)
     assert joints(session)[1] == pytest.approx(KNEE, abs=1e-9)
-    shown = session.project.layer_runtime.shown.placement
-    corner = KNEE + RING * EM * GRIP_ANGLE * shown.factor
-    spot = PointerHit(place=shown.apply_inverse(corner), em=EM)
-    drag(session, spot, KNEE + 1.5 * (corner - KNEE))
+    spot, at = grab(session, "scale", 1 + 1j)
+    drag(session, spot, KNEE + 1.5 * (at - KNEE))
     assert placements(session)[SHIN].factor == pytest.approx(1.5j, abs=1e-6)
     assert placements(session)[FOOT].factor == pytest.approx(1.5j, abs=1e-6)
     transform = session.project.document.layer(SHIN).keys_of(TRANSFORM)[0].value
     assert transform.turn == pytest.approx(math.pi / 2)
 
 
-def test_ring_adds_up_full_turns_and_takes_typed_degrees(session):
+def test_moved_pivot_of_a_layer_stays_where_it_is(session):
+    set_active_layer(session, SHIN)
+    pull(session, SHIN, KNEE + 20, KNEE + 15 + 8j)
+    before, document = placements(session), session.project.document
+    spot, at = grab(session, "pivot")
+    goal = at + 9 - 4j
+    drag(session, spot, goal)
+    assert session.project.document is document, "the picture does not move"
+    assert session.project.selection.pivot == pytest.approx(goal)
+    for kind, way, factor in (("turn", 0j, 1j), ("scale", 1 - 1j, 0.7)):
+        spot, at = grab(session, kind, way)
+        drag(session, spot, goal + factor * (at - goal))
+    moved, point = placements(session), np.array([0j])
+    for layer in (SHIN, FOOT):
+        wanted = goal + 0.7j * (before[layer].apply(point) - goal)
+        np.testing.assert_allclose(moved[layer].apply(point), wanted, rtol=0, atol=1e-6)
+    assert moved[THIGH] == before[THIGH]
+    editing.undo(session)
+    editing.undo(session)
+    assert session.project.document is document
+
+
+def test_box_adds_up_full_turns_and_takes_typed_degrees(session):
     set_active_layer(session, SHIN)
     settle(session)
-    tool_pointer.press_pointer(session, PointerHit(place=KNEE + RING * EM, em=EM))
+    spot, at = grab(session, "turn")
+    tool_pointer.press_pointer(session, spot)
     for step in range(1, 16):
         shown = session.project.layer_runtime.shown.placement
-        place = shown.apply_inverse(KNEE + RING * EM * cmath.exp(0.5j * step))
+        place = shown.apply_inverse(KNEE + (at - KNEE) * cmath.exp(0.5j * step))
         tool_pointer.move_pointer(session, place)
         run_update_steps(session)
     turn = session.project.document.layer(SHIN).keys_of(TRANSFORM)[0].value.turn
@@ -160,6 +192,28 @@ def test_ring_adds_up_full_turns_and_takes_typed_degrees(session):
     tool_pointer.release_pointer(session, KNEE)
     turn = session.project.document.layer(SHIN).keys_of(TRANSFORM)[0].value.turn
     assert turn == pytest.approx(math.radians(-30))
+
+
+def test_box_turns_the_ik_target_of_a_planted_layer(session):
+    set_active_layer(session, FOOT)
+    settle(session)
+    layer_posing.plant_layer(session)
+    settle(session)
+    spot, at = grab(session, "turn")
+    drag(session, spot, ANKLE + cmath.exp(0.4j) * (at - ANKLE))
+    assert joints(session)[2] == pytest.approx(ANKLE, abs=1e-6)
+    assert placements(session)[FOOT].factor == pytest.approx(cmath.exp(0.4j), abs=1e-6)
+
+
+def test_arrow_keys_turn_and_scale_a_layer(session):
+    set_active_layer(session, SHIN)
+    settle(session)
+    change_layer_by_key(session, 0.2, 1.0)
+    settle(session)
+    change_layer_by_key(session, 0.0, 1.1)
+    settle(session)
+    assert placements(session)[SHIN].factor == pytest.approx(1.1 * cmath.exp(0.2j), abs=1e-6)
+    assert joints(session)[1] == pytest.approx(KNEE, abs=1e-9)
 
 
 def test_first_key_at_a_later_frame_keeps_the_first_frame(session):
@@ -269,7 +323,7 @@ def test_bone_of_a_planted_foot_is_not_turned_in_vain(session):
     assert "bends to the IK target of" in toast
 
 
-def test_ring_of_a_posed_root_turns_it_about_its_posed_anchor(session):
+def test_box_of_a_posed_root_turns_it_about_its_posed_anchor(session):
     set_active_layer(session, BODY)
     settle(session)
     session.project.history.do(shape_commands.set_anchor(BODY, HIP))
@@ -278,7 +332,8 @@ def test_ring_of_a_posed_root_turns_it_about_its_posed_anchor(session):
     around = HIP + 20 + 10j
     shown = session.project.layer_runtime.shown
     before = shown.placement.apply(shown.positions)
-    drag(session, PointerHit(place=around + RING * EM, em=EM), around + RING * EM * 1j)
+    spot, at = grab(session, "turn")
+    drag(session, spot, around + 1j * (at - around))
     shown = session.project.layer_runtime.shown
     wanted = around + 1j * (before - around)
     np.testing.assert_allclose(shown.placement.apply(shown.positions), wanted, rtol=0, atol=1e-3)

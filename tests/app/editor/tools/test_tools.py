@@ -159,7 +159,7 @@ def test_selected_handles_are_pulled_together(session):
 def test_a_turn_begins_where_the_pointer_leaves_the_handle(session):
     end = RIGHT + 15j * np.exp(0.2j)
     drag(session, replace(AT_RIGHT, alt=True), RIGHT + 15j, end)
-    assert session.tools.active_tool.swept == pytest.approx(0.2)
+    assert session.tools.active_tool.turning.angle == pytest.approx(0.2)
     assert tags(session) == ["+11°"]
     tool_pointer.release_pointer(session, end)
     settle(session)
