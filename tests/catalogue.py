@@ -140,4 +140,4 @@ if __name__ == "__main__":
         # Of a merge with conflicts, all entries of both sides are kept.
         path.write_text(make_translations(read_translations(path)), encoding="utf-8")
         for text in missing_texts(path):
-            sys.stdout.write(f"{path.name}: {text}\n")
+            sys.stdout.write(f"{path.name}: {text[:80]!r}\n")
