@@ -49,19 +49,20 @@ def _unquoted(strings: str) -> str:
 def read_translations(path: Path) -> dict[str, tuple[str, ...]]:
     """Return the texts of a `.po` file by the English ones, each with its plural forms.
 
-    A text that is not translated yet has an empty form. The header is the text of "".
+    Texts that are not translated yet are left out. The header is the text of "".
     """
-    text = path.read_text(encoding="utf-8")
-    if not text.endswith("\n"):
-        text += "\n"
-    return {
-        _unquoted(one): (
-            tuple(map(_unquoted, _FORM.findall(forms)))
-            if many
-            else (_unquoted(forms.removeprefix("msgstr ")),)
-        )
-        for one, many, forms in _ENTRY.findall(text)
-    }
+    return parse_translations(path.read_text(encoding="utf-8"))
+
+
+def parse_translations(text: str) -> dict[str, tuple[str, ...]]:
+    """Return the texts of the content of a `.po` file, as `read_translations` does."""
+    translations = {}
+    for one, many, strings in _ENTRY.findall(text if text.endswith("\n") else text + "\n"):
+        forms = _FORM.findall(strings) if many else [strings[7:]]  # behind "msgstr "
+        translated = tuple(map(_unquoted, forms))
+        if all(translated):
+            translations[_unquoted(one)] = translated
+    return translations
 
 
 @cache

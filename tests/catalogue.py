@@ -13,7 +13,7 @@ from pathlib import Path
 from babel.messages.catalog import Catalog
 from babel.messages.pofile import read_po, write_po
 
-from app.texts import DOMAIN, LOCALE, read_translations
+from app.texts import DOMAIN, LOCALE, parse_translations, read_translations
 
 ROOT = Path(__file__).parents[1]
 TEMPLATE = LOCALE / f"{DOMAIN}.pot"
@@ -104,6 +104,16 @@ def quote(text: str) -> str:
     return f'"{escaped}"'
 
 
+def read_merged(path: Path) -> dict[str, tuple[str, ...]]:
+    """Return the translations of a file, or of both sides of a merge with conflicts in it."""
+    text = re.sub(
+        r"^(<{7}|={7}|>{7}).*\n", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE
+    )
+    text = re.sub(r'^msgstr ""\n(?=msgstr ")', "", text, flags=re.MULTILINE)
+    text = re.sub(r"^(msgstr .*\n)(msgstr .*\n)+", r"\1", text, flags=re.MULTILINE)
+    return parse_translations(text)
+
+
 def make_translations(known: Mapping[str, tuple[str, ...]]) -> str:
     """Return a file of the known translations: all of the catalogue's texts, and no others.
 
@@ -137,7 +147,6 @@ if __name__ == "__main__":
     TEMPLATE.parent.mkdir(exist_ok=True)
     TEMPLATE.write_bytes(make_catalogue())
     for path in translated_files():
-        # Of a merge with conflicts, all entries of both sides are kept.
-        path.write_text(make_translations(read_translations(path)), encoding="utf-8")
+        path.write_text(make_translations(read_merged(path)), encoding="utf-8")
         for text in missing_texts(path):
             sys.stdout.write(f"{path.name}: {text[:80]!r}\n")
