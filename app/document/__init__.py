@@ -91,6 +91,7 @@ from app.document.commands.keys import (
     track_commands as track_commands,
 )
 from app.document.commands.layers import (
+    deform_group_commands as deform_group_commands,
     group_commands as group_commands,
     joint_commands as joint_commands,
     layer_commands as layer_commands,

@@ -140,6 +140,10 @@ class Layer:
     ik_parents: int | None = None
     # Side to which these bones bend, as of `solve_chain`; 0 keeps the side of their transforms.
     pole_side: int = 0
+    # Id of the deform group that bends this member: a layer that is not drawn itself.
+    deform_group: int | None = None
+    # The layer before it became a member; None for a layer that was a still picture.
+    before_bending: "Layer | None" = field(default=None, repr=False, hash=False)
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -207,6 +211,7 @@ class Layer:
             ),
             name=self.name,
         )
+        self._check_membership()
         mask = self.cut_out.mask
         require(
             mask is None or mask.size == self.picture.size,
@@ -431,6 +436,31 @@ class Layer:
             for handle, place in zip(self.handles, reached, strict=True)
             if handle.id in pose.targets
         }
+
+    def _check_membership(self) -> None:
+        """Refuse a member of a deform group with a motion of its own."""
+        if self.deform_group is None:
+            require(
+                self.before_bending is None,
+                N_("{name!r} is no member of a deform group, so it has no earlier mesh."),
+                name=self.name,
+            )
+            return
+        require(
+            self.still
+            and not self.attachments
+            and not any(LAYER_KINDS[name].moves_layer for name, _part in self.channels),
+            N_(
+                "{name!r} is a member of a deform group, which moves it. Attach or move the group, "
+                "or part it first."
+            ),
+            name=self.name,
+        )
+        require(
+            self.before_bending is None or self.before_bending.deform_group is None,
+            N_("{name!r} was a member of a deform group before it became one."),
+            name=self.name,
+        )
 
     def _check_handles(self) -> None:
         handles = self.handles

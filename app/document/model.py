@@ -76,6 +76,8 @@ class Document:
     _layers: Mapping[int, Layer] = field(init=False, repr=False)
     _switch_groups: Mapping[SwitchMember, SwitchGroup] = field(init=False, repr=False)
     _groups: Mapping[str, Group] = field(init=False, repr=False)
+    # Members of deform groups from back to front, by the group's layer id.
+    _members: Mapping[int, tuple[Layer, ...]] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         chosen = {member: each for each in self.switch_groups for member in each.members}
@@ -83,6 +85,7 @@ class Document:
             ("_layers", {each.id: each for each in self.layers}),
             ("_switch_groups", chosen),
             ("_groups", {each.name: each for each in self.groups}),
+            ("_members", _members_by_group(self.layers)),
         ):
             object.__setattr__(self, name, found)
         self._check_layers()
@@ -134,9 +137,25 @@ class Document:
         return tuple(
             each
             for each in self.layers
-            if not (each.reference or self.is_in_hidden(each))
-            and (each.id in self._switch_groups or not each.hidden)
+            if not (self.is_deform_group(each.id) or self._is_left_out(each))
+            and not (each.deform_group is not None and self._is_left_out(self.deform_layer(each)))
         )
+
+    def _is_left_out(self, layer: Layer) -> bool:
+        is_hidden = layer.hidden and layer.id not in self._switch_groups
+        return layer.reference or is_hidden or self.is_in_hidden(layer)
+
+    def is_deform_group(self, identity: int) -> bool:
+        """Return whether a layer bends members, which are drawn in its place."""
+        return identity in self._members
+
+    def deform_members(self, identity: int) -> tuple[Layer, ...]:
+        """Return the layers that a deform group bends, from back to front."""
+        return self._members.get(identity, ())
+
+    def deform_layer(self, layer: Layer) -> Layer:
+        """Return the layer whose mesh, keys and parents move a layer: itself or its group."""
+        return layer if layer.deform_group is None else self.layer(layer.deform_group)
 
     def is_in_hidden(self, layer: Layer) -> bool:
         """Return whether a group around the layer is hidden at all frames.
@@ -307,6 +326,7 @@ class Document:
             N_("Two layers have the name {value!r}; rename one of them."),
         )
         self._check_groups()
+        self._check_deform_groups()
         for layer in self.layers:
             for frame in layer.keyed_range:
                 self._require_inside(frame)
@@ -474,6 +494,25 @@ class Document:
                 group=layer.group,
             )
 
+    def _check_deform_groups(self) -> None:
+        for identity, members in self._members.items():
+            group = self.layer(identity)
+            require(
+                not group.still and group.deform_group is None,
+                N_("{group!r} bends {layer!r}, so it can be neither still nor a member itself."),
+                group=group.name,
+                layer=members[0].name,
+            )
+        for layer in self.layers:
+            parents = {joint.parent for joint in layer.attachments} - {None}
+            for member in (self.layer(each) for each in parents if each is not None):
+                require(
+                    member.deform_group is None,
+                    N_("{layer!r} is attached to {member!r}; attach it to the deform group."),
+                    layer=layer.name,
+                    member=member.name,
+                )
+
     def _check_loop(self, layer: Layer) -> None:
         """Refuse cycles, tracks and springs that cannot repeat in a loop."""
         period = self.frames.last - self.frames.first
@@ -507,6 +546,14 @@ class Document:
                 ),
                 layer=layer.name,
             )
+
+
+def _members_by_group(layers: Sequence[Layer]) -> Mapping[int, tuple[Layer, ...]]:
+    found: dict[int, tuple[Layer, ...]] = {}
+    for layer in layers:
+        if layer.deform_group is not None:
+            found[layer.deform_group] = (*found.get(layer.deform_group, ()), layer)
+    return found
 
 
 def _leads_back(parents: Mapping[int, int | None], identity: int) -> bool:

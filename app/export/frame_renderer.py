@@ -3,7 +3,6 @@
 import math
 from collections.abc import Generator, Mapping
 from contextlib import ExitStack, suppress
-from dataclasses import replace
 from functools import partial
 from typing import Final, NamedTuple
 
@@ -12,11 +11,20 @@ import numpy as np
 from app.document import Document, camera_at, is_visible
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.decimation import MeshDecimator
-from app.export.framing import find_shown_box
+from app.export.framing import find_shown_box, split_into_tiles
 from app.export.plan import ExportPlan
 from app.export.run import export_frames
 from app.motion import Evaluator, SceneFrame, VertexArray, bounding_box
-from app.render import TRANSPARENT, Backdrop, Colour, DrawnMesh, Renderer, Scene, View
+from app.render import (
+    TRANSPARENT,
+    Backdrop,
+    Colour,
+    DrawnMesh,
+    MemberMesh,
+    Renderer,
+    Scene,
+    View,
+)
 from app.render.gpu.context import Context, GlError, is_software, largest_size
 from app.render.gpu.mesh import GpuMesh
 from app.render.gpu.picture import GpuPicture
@@ -30,7 +38,6 @@ from engine.geometry import IDENTITY_MOTION, Similarity
 
 _SMALL: Final = 0.75  # frame pixels per picture pixel
 _TILE: Final = 4096  # pixels each way drawn at once, at most
-_MOST_PIXELS: Final = 2**28  # pixels of a frame: a gigabyte
 _MANY: Final = 24  # frames from which on decimation pays
 _LOOKS: Final = 9  # frames examined for decimation
 _TINY: Final = 16.0  # square pixels; a smaller triangle costs more than its pixels
@@ -44,14 +51,6 @@ class PosedFrame(NamedTuple):
     scene: SceneFrame
     vertices: Mapping[int, VertexArray]  # by layer id, in the plane
     camera: Similarity  # moves the camera's view onto the canvas
-
-
-class _Tile(NamedTuple):
-    """A part of a frame that is drawn at once, and its upper left corner."""
-
-    view: View
-    left: int
-    top: int
 
 
 class FrameRenderer:
@@ -87,10 +86,11 @@ class FrameRenderer:
         shots = [camera_at(document, frame) for frame in plan.times]
         zooms = [1.0 if shot is None else shot.zoom for shot in shots]
         smallest, largest = min(zooms) * plan.view.scale, max(zooms) * plan.view.scale
-        meshes = [layer.domain.mesh for layer in layers]
+        bent = {layer.id: document.deform_layer(layer) for layer in layers}
+        meshes = [bent[layer.id].domain.mesh for layer in layers]
         self._thinnings = {
             layer.id: MeshDecimator(layer.domain, largest)
-            for layer, mesh in zip(layers, meshes, strict=True)
+            for layer, mesh in zip(bent.values(), meshes, strict=True)
             if _pays(plan, mesh, context, largest)
         }
         looks = np.linspace(0, len(plan.times) - 1, _LOOKS).round().astype(int)
@@ -105,14 +105,15 @@ class FrameRenderer:
             # At its own size the drawing is exact with one sample a pixel. Much smaller, it is
             # finer with four.
             finer = 2 if smallest < _SMALL else 1
-            self._tiles = _tiles(plan.view, min(_TILE, largest_size(context) // finer))
+            self._tiles = split_into_tiles(plan.view, min(_TILE, largest_size(context) // finer))
             self._target = RenderTarget(programs, self._tiles[0].view.size, finer)
             owned.callback(self._target.release)
             # Earlier errors belong to a window, or to moderngl, which binds the previous
             # framebuffer even if it is deleted. A target without memory has raised by itself.
             while context.error != _NO_ERROR:
                 pass
-            self._drawn: dict[int, DrawnMesh] = {}
+            self._drawn: dict[int, DrawnMesh | MemberMesh] = {}
+            leaders: dict[int, DrawnMesh] = {}  # by the layer that bends them
             textures: dict[int, GpuPicture] = {}  # by picture; layers may share one
             for layer, mesh in zip(layers, meshes, strict=True):
                 rest = mesh.vertices - layer.corner
@@ -121,12 +122,17 @@ class FrameRenderer:
                     texture = GpuPicture(context, pictures[layer.id])
                     textures[id(pictures[layer.id])] = texture
                     owned.callback(texture.release)
-                seam = find_closed_cuts(layer.domain)
+                by = bent[layer.id]
+                seam = find_closed_cuts(by.domain)
                 gpu_mesh = GpuMesh(
                     programs, texture, rest=rest, triangles=mesh.triangles, seam=seam
                 )
                 owned.callback(gpu_mesh.release)
-                self._drawn[layer.id] = DrawnMesh(gpu_mesh, by_shader=False)
+                if by.id in leaders:
+                    self._drawn[layer.id] = MemberMesh(gpu_mesh, leaders[by.id])
+                else:
+                    leaders[by.id] = DrawnMesh(gpu_mesh, by_shader=False)
+                    self._drawn[layer.id] = leaders[by.id]
                 owned.callback(self._drawn[layer.id].release)
             self._owned = owned.pop_all()
 
@@ -139,19 +145,28 @@ class FrameRenderer:
             self._prepare_thinnings()
         try:
             scene = self._evaluate(frame)
-            places = {layer: each.scene_positions for layer, each in scene.layers.items()}
+            # Members of a deform group share their vertices.
+            shown = {
+                self._document.deform_layer(each.clip.layer).id: each
+                for each in scene.layers.values()
+            }
+            places = {layer: each.scene_positions for layer, each in shown.items()}
         except EXPECTED_ERRORS as error:
             raise _failure(frame, message_of(error)) from error
-        vertices = {}
+        posed = {}
         for layer, positions in places.items():
             box = bounding_box(positions)
             if not np.isfinite(box).all():
                 raise _failure(frame, _("some of its points are not finite"))
             self._reach = self._reach.joined(box)
-            triangles, thinning = scene.layers[layer].vertices.triangles, self._thinnings.get(layer)
+            triangles, thinning = shown[layer].vertices.triangles, self._thinnings.get(layer)
             if thinning is not None:
                 triangles = thinning.triangles(positions, triangles)
-            vertices[layer] = VertexArray(positions=positions, triangles=triangles)
+            posed[layer] = VertexArray(positions=positions, triangles=triangles)
+        vertices = {
+            layer: posed[self._document.deform_layer(each.clip.layer).id]
+            for layer, each in scene.layers.items()
+        }
         camera = scene.camera
         return PosedFrame(
             scene,
@@ -210,7 +225,9 @@ class FrameRenderer:
         width, height = min(width, view.size[0]), min(height, view.size[1])
         if not posed.vertices:
             return
-        vertices = np.concatenate([placed.positions for placed in posed.vertices.values()])
+        vertices = np.concatenate(
+            [each.positions for each in dict.fromkeys(posed.vertices.values())]
+        )
         box = bounding_box(view.to_pixels(posed.camera.apply(vertices)))
         # Two more pixels: no touched pixel is left out.
         left, top = (max(0, math.floor(side) - 2) for side in _sides(box.lower))
@@ -265,25 +282,6 @@ def _filled(size: tuple[int, int], colour: Colour) -> Bytes:
 
 def _sides(corner: complex) -> tuple[float, float]:
     return corner.real, corner.imag
-
-
-def _tiles(view: View, side: int) -> list[_Tile]:
-    """Divide a frame into equal tiles; the last ones may extend beyond it."""
-    width, height = view.size
-    if width * height > _MOST_PIXELS:
-        raise LissomError(
-            _(
-                "a frame of {width} × {height} pixels is too large; a frame can have at most "
-                "{most:,} pixels. Choose a smaller size"
-            ).format(width=width, height=height, most=_MOST_PIXELS)
-        )
-    size = min(width, side), min(height, side)
-    half = complex(*size) / 2
-    return [
-        _Tile(replace(view, centre=view.to_plane(complex(left, top) + half), size=size), left, top)
-        for top in range(0, height, size[1])
-        for left in range(0, width, size[0])
-    ]
 
 
 def _colour(plan: ExportPlan) -> Colour:

@@ -1,7 +1,8 @@
 """The part of the plane that an export shows, and its size in pixels."""
 
 import math
-from typing import Final
+from dataclasses import replace
+from typing import Final, NamedTuple
 
 from app.document import Document, ExportSettings
 from app.errors import LissomError
@@ -12,6 +13,15 @@ from app.texts import _
 
 # Margin at each side of a fitted motion, as a share of its longer side.
 MARGIN: Final = 0.02
+MOST_PIXELS: Final = 2**28  # pixels of a frame: a gigabyte
+
+
+class FrameTile(NamedTuple):
+    """A part of a frame that is drawn at once, and its upper left corner."""
+
+    view: View
+    left: int
+    top: int
 
 
 def find_shown_box(view: View) -> BoundingBox:
@@ -36,6 +46,27 @@ def frame_view(settings: ExportSettings, document: Document, motion: BoundingBox
     left, bottom = math.floor(lower.real), math.floor(lower.imag)
     size = _even(math.ceil(upper.real) - left), _even(math.ceil(upper.imag) - bottom)
     return View(centre=complex(left, bottom) + complex(*size) / 2, scale=1.0, size=size)
+
+
+def split_into_tiles(view: View, side: int) -> list[FrameTile]:
+    """Divide a frame into equal tiles; the last ones may extend beyond it."""
+    width, height = view.size
+    if width * height > MOST_PIXELS:
+        raise LissomError(
+            _(
+                "a frame of {width} × {height} pixels is too large; a frame can have at most "
+                "{most:,} pixels. Choose a smaller size"
+            ).format(width=width, height=height, most=MOST_PIXELS)
+        )
+    size = min(width, side), min(height, side)
+    half = complex(*size) / 2
+    return [
+        FrameTile(
+            replace(view, centre=view.to_plane(complex(left, top) + half), size=size), left, top
+        )
+        for top in range(0, height, size[1])
+        for left in range(0, width, size[0])
+    ]
 
 
 def check_largest_size(name: str, size: tuple[int, int]) -> None:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Final, TypeVar
+from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -83,6 +83,12 @@ class MorphScene:
     parts: tuple[int | CompositeGroup[int], ...]
 
 
+class _Motion(NamedTuple):
+    triangle_orders: tuple[tuple[float, Integers], ...]
+    motion: MorphTargets
+    node: NodeMotion | None
+
+
 def with_reduced_meshes(document: Document, triangles: int) -> Document:
     """Return a document whose meshes have at most about this many triangles."""
     return replace(document, layers=tuple(_lighter(f, triangles) for f in document.layers))
@@ -136,31 +142,38 @@ def build_morph_scene(
             _("no layer is visible in these frames, so there is nothing to export; show a layer")
         )
     found = []
+    moved: dict[int, _Motion] = {}  # by layer; members of a deform group move alike
     for index, clip in enumerate(clips):
-        layer, mesh = clip.layer, clip.layer.domain.mesh
-        seam = find_closed_cuts(layer.domain)
+        layer, bent = clip.layer, document.deform_layer(clip.layer)
+        mesh, seam = bent.domain.mesh, find_closed_cuts(bent.domain)
         places = mesh.vertices if seam is None else seam.close_cuts(mesh.vertices)
-        allowed = DEFAULT_TOLERANCE if tolerance is None else tolerance
-        node = build_node_motion(
-            partial(_placement, moving, evaluator, plan, layer.id),
-            places,
-            layer.pivot,
-            times,
-            OF_NODE * allowed,
-        )
-        if node is not None:
-            allowed *= (1 - OF_NODE) / float(node.values[:, SCALE].max())
-        steps = build_morph_targets(
-            partial(_painted, moving, evaluator, seam, layer.id),
-            places,
-            times,
-            tolerance=allowed,
-            most=MOST_TARGETS if tolerance is None else None,
-        )
-        motion = yield from _share(steps, plan.span, (index, len(clips)))
+        if bent.id not in moved:
+            allowed = DEFAULT_TOLERANCE if tolerance is None else tolerance
+            node = build_node_motion(
+                partial(_placement, moving, evaluator, plan, bent.id),
+                places,
+                bent.pivot,
+                times,
+                OF_NODE * allowed,
+            )
+            if node is not None:
+                allowed *= (1 - OF_NODE) / float(node.values[:, SCALE].max())
+            steps = build_morph_targets(
+                partial(_painted, moving, evaluator, seam, bent.id),
+                places,
+                times,
+                tolerance=allowed,
+                most=MOST_TARGETS if tolerance is None else None,
+            )
+            motion = yield from _share(steps, plan.span, (index, len(clips)))
+            order, own = TriangleOrder(mesh), clip_of(document, bent.id)
+            orders = [(frame, order.triangles(own, frame)) for frame in numbers]
+            moved[bent.id] = _Motion(
+                tuple(((n - first) / plan.timeline_fps, each) for n, each in _changes(orders)),
+                replace(motion, times=freeze((motion.times - first) / plan.timeline_fps)),
+                node and replace(node, times=freeze((node.times - first) / plan.timeline_fps)),
+            )
         texture, uv = _cut_out(pictures[layer.id], places - layer.corner)
-        order = TriangleOrder(mesh)
-        orders = [(frame, order.triangles(clip, frame)) for frame in numbers]
         visibility = [(frame, is_visible(document, layer, frame)) for frame in numbers]
         shape = MorphMesh(
             name=plan.out.stem if len(document.layers) == 1 else layer.name,
@@ -168,14 +181,12 @@ def build_morph_scene(
             opacity=layer.opacity
             * math.prod(group.opacity for group in document.groups_around(layer.group)),
             uv=uv,
-            triangle_orders=tuple(
-                ((n - first) / plan.timeline_fps, order) for n, order in _changes(orders)
-            ),
+            triangle_orders=moved[bent.id].triangle_orders,
             visibility_changes=tuple(
                 ((n - first) / plan.timeline_fps, seen) for n, seen in _changes(visibility)
             ),
-            motion=replace(motion, times=freeze((motion.times - first) / plan.timeline_fps)),
-            node=node and replace(node, times=freeze((node.times - first) / plan.timeline_fps)),
+            motion=moved[bent.id].motion,
+            node=moved[bent.id].node,
         )
         found.append(shape)
     numbered = {clip.layer.id: number for number, clip in enumerate(clips)}

@@ -117,7 +117,8 @@ def plan_export(
     is_drawn = EXPORT_FORMATS[settings.format].is_drawn
     passes = settings.repeat if is_drawn and not EXPORT_FORMATS[settings.format].is_still else 1
     seconds = len(times) / fps if is_drawn else (end - frames.first) / fps
-    rest = np.concatenate([layer.domain.mesh.vertices for layer in document.exported_layers])
+    bent = dict.fromkeys(map(document.deform_layer, document.exported_layers))
+    rest = np.concatenate([layer.domain.mesh.vertices for layer in bent])
     if settings.framing == "fit" and not document.camera and extent is None:
         extent = measure_extent(document, evaluator, frames)
     plan = ExportPlan(

@@ -25,7 +25,7 @@ from app.document import (
     without_foreign_clips,
 )
 from app.motion.inbetweens.pose_sampler import PoseSampler
-from app.motion.layer_frame import LayerFrame
+from app.motion.layer_frame import LayerFrame, member_frame
 from app.motion.layer_stages import LayerStages, exact_budget
 from app.motion.parenting.layer_limbs import place_layer
 from app.motion.parenting.layer_pull import LayerPull
@@ -60,6 +60,7 @@ class SceneFrame:
             layer: each
             for layer, each in self.layers.items()
             if is_visible(document, document.layer(layer), frame)
+            and not document.is_deform_group(layer)
         }
 
     def alone(self, layers: Collection[int]) -> Self:
@@ -107,6 +108,7 @@ class Evaluator:
         layers = {
             layer.id: LayerStages.exact(clip_of(document, layer.id), samplers.get(layer.id), budget)
             for layer in document.layers
+            if layer.deform_group is None
         }
         return cls(layers=layers, check=check)
 
@@ -136,17 +138,34 @@ class Evaluator:
             Whether exact layers are kept, within a budget, until they are evaluated once more.
         """
         if quality == "exact":
-            every = [each.id for each in document.layers if is_visible(document, each, frame)]
+            every = [
+                each.id
+                for each in document.layers
+                if is_visible(document, each, frame) and not document.is_deform_group(each.id)
+            ]
             wanted = every if only is None else only
-            layers = {each: self._exact(document, each, frame, keep=keep) for each in wanted}
+            bent = {each: document.deform_layer(document.layer(each)).id for each in wanted}
+            moved = {
+                each: self._exact(document, each, frame, keep=keep)
+                for each in dict.fromkeys(bent.values())
+            }
+            layers = {
+                each: moved[by] if each == by else member_frame(moved[by], clip_of(document, each))
+                for each, by in bent.items()
+            }
         else:
             shown = {
                 layer: stages.displayed_frame(
                     document, int(frame), (poses or {}).get(layer), is_coarse=is_coarse
                 )
                 for layer, stages in self.layers.items()
+                if document.layer(layer).deform_group is None
             }
             layers = self.placed(document, shown, poses or {})
+            for layer, stages in self.layers.items():
+                if layer not in layers:
+                    group = layers[document.deform_layer(document.layer(layer)).id]
+                    layers[layer] = member_frame(group, stages.clip(document), stages.shown)
         return SceneFrame(document=document, frame=frame, layers=layers)
 
     def _exact(self, document: Document, layer: int, frame: float, *, keep: bool) -> LayerFrame:
@@ -167,7 +186,8 @@ class Evaluator:
     def exact_placement(self, document: Document, layer: int, frame: float) -> Similarity:
         """Return a layer's placement at a frame; what is missing is computed."""
         self.check()
-        return self._exact_transforms(document).placement(layer, frame)
+        bent = document.deform_layer(document.layer(layer)).id
+        return self._exact_transforms(document).placement(bent, frame)
 
     def _exact_transforms(self, document: Document) -> ParentTransforms:
         if self._own is None or self._own.document is not document:
@@ -191,7 +211,8 @@ class Evaluator:
 
         While the layer itself is posed, its earlier transforms stay valid.
         """
-        own, transforms = document.layer(layer), self.current_transforms(document)
+        own = document.deform_layer(document.layer(layer))
+        layer, transforms = own.id, self.current_transforms(document)
         if not own.attachments and not limb_ends(document, layer):
             return [transform_at(document, own, frame) for frame in frames]
         if transforms is None and self.transforms is not None:

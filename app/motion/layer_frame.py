@@ -1,7 +1,7 @@
 """The displayed frame of a layer: its pose or in-between on a mesh."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -179,6 +179,21 @@ def evaluate_layer(
         correction=correction,
         is_approximate=is_rough,
     )
+
+
+def member_frame(group: LayerFrame, clip: Clip, earlier: LayerFrame | None = None) -> LayerFrame:
+    """Return the frame of a deform group's member: the same vertices for another picture.
+
+    Without a change it is the `earlier` object.
+    """
+    made = replace(group, clip=clip)
+    if earlier is not None and all(
+        getattr(earlier, each.name) is (now := getattr(made, each.name))
+        or (each.name in {"clip", "frame", "placement"} and getattr(earlier, each.name) == now)
+        for each in fields(made)
+    ):
+        return earlier
+    return made
 
 
 def _is_earlier_state(earlier: LayerFrame, frame: float, store: InbetweenCache, clip: Clip) -> bool:

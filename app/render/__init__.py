@@ -7,7 +7,11 @@ OpenGL.
 """
 
 from app.render.colormap import heat_colormap as heat_colormap
-from app.render.drawn_mesh import DrawnMesh as DrawnMesh, shader_is_faster as shader_is_faster
+from app.render.drawn_mesh import (
+    DrawnMesh as DrawnMesh,
+    MemberMesh as MemberMesh,
+    shader_is_faster as shader_is_faster,
+)
 from app.render.handles import (
     HandleMark as HandleMark,
     mark_anchor as mark_anchor,

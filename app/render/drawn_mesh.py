@@ -60,6 +60,31 @@ class DrawnMesh:
         return self._pose
 
 
+class MemberMesh:
+    """Owner of the poses of a mesh with the vertices of another one, which are uploaded once.
+
+    It must be released before the other one, the `leader`.
+    """
+
+    def __init__(self, mesh: GpuMesh, leader: DrawnMesh) -> None:
+        self._mesh = mesh
+        self._leader = leader
+        self._poses: dict[PosedMesh, PosedMesh] = {}
+
+    def pose(self, vertices: Vertices, *, placement: Similarity = IDENTITY_MOTION) -> PosedMesh:
+        """Return the mesh posed by these vertices."""
+        leading = self._leader.pose(vertices, placement=placement)
+        if leading not in self._poses:
+            self._poses[leading] = leading.sharing(self._mesh)
+        posed = self._poses[leading]
+        posed.place(*placement)
+        return posed
+
+    def release(self) -> None:
+        for posed in self._poses.values():
+            posed.release()
+
+
 def shader_is_faster(context: moderngl.Context) -> bool:
     """Return whether the shader should compute streamed vertices, and not the processor.
 

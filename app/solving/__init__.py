@@ -5,6 +5,11 @@ Out: certified poses.
 Imports: `app.motion`, `app.storage`.
 """
 
+from app.solving.deform_groups import (
+    BendingAsOne as BendingAsOne,
+    bend_as_one as bend_as_one,
+    part_deform_group as part_deform_group,
+)
 from app.solving.drag.drag_solver import DragSolver as DragSolver
 from app.solving.drag.rig import Rig as Rig
 from app.solving.drag.shown_pose import fit_shown_pose as fit_shown_pose

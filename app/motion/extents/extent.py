@@ -60,7 +60,8 @@ def measure_extent(
     frames = frames_for_fit(document, frames or export_frame_range(document))
 
     def reaches(frame: int) -> Floats:
-        ids = [layer.id for layer in document.exported_layers]
+        bent = map(document.deform_layer, document.exported_layers)
+        ids = dict.fromkeys(layer.id for layer in bent)
         layers = evaluator.evaluate(document, frame, only=ids, keep=True).layers
         boxes = [bounding_box(layer.scene_positions) for layer in layers.values()]
         lower, upper = np.array(boxes).T

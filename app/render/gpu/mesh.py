@@ -135,21 +135,40 @@ class GpuMesh:
             self._border.release()
 
 
+class PaintingOrder:
+    """Owner of the triangles of a pose, in the order in which they are painted."""
+
+    def __init__(self, mesh: GpuMesh) -> None:
+        self.triangles = mesh.triangles
+        self.buffer = mesh.programs.context.buffer(_indices(mesh.triangles))
+
+    def write(self, triangles: Integers) -> None:
+        self.buffer.write(_indices(triangles))
+        self.triangles = triangles
+
+
 class PosedMesh:
     """A mesh with a vertex source, ready to draw; owner of the source and of its draw order.
 
     The mesh must be released after its poses. The source must have the mesh's number of vertices.
+    A pose with a `shared_order` owns neither, and must be released before their owner.
     """
 
-    def __init__(self, mesh: GpuMesh, source: VertexSource) -> None:
+    def __init__(
+        self, mesh: GpuMesh, source: VertexSource, *, shared_order: PaintingOrder | None = None
+    ) -> None:
         self.picture = mesh.picture
         self._placement = (1.0, 0.0, 0.0, 0.0)
         self._mesh = mesh
         self._source = source
-        self._triangles = mesh.triangles
-        self._order = mesh.programs.context.buffer(_indices(mesh.triangles))
+        self._is_owner = shared_order is None
+        self._order = shared_order or PaintingOrder(mesh)
         self._heat: moderngl.Buffer | None = None
         self._bindings: dict[ShaderFiles, moderngl.VertexArray] = {}
+
+    def sharing(self, mesh: GpuMesh) -> "PosedMesh":
+        """Return the same pose of another picture, on a mesh with the same vertices."""
+        return PosedMesh(mesh, self._source, shared_order=self._order)
 
     def write_heat(self, values: Singles) -> None:
         """Upload the quantity (v,) of the heat map."""
@@ -165,14 +184,13 @@ class PosedMesh:
 
         There may be at most as many as the mesh has.
         """
-        if triangles is self._triangles:
+        if triangles is self._order.triangles:
             return
         most = len(self._mesh.triangles)
         if len(triangles) > most:
             text = _("the mesh can have at most {most} visible triangles, not {count}")
             raise LissomError(text.format(most=most, count=len(triangles)))
-        self._order.write(_indices(triangles))
-        self._triangles = triangles
+        self._order.write(triangles)
 
     def place(self, factor: complex, shift: complex) -> None:
         """Draw every vertex z at factor · z + shift."""
@@ -180,8 +198,8 @@ class PosedMesh:
 
     def draw(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the triangles with a mesh program: its files, and the source's shader."""
-        binding = self._bound(files, self._order, uniforms)
-        binding.render(moderngl.TRIANGLES, vertices=self._triangles.size)
+        binding = self._bound(files, self._order.buffer, uniforms)
+        binding.render(moderngl.TRIANGLES, vertices=self._order.triangles.size)
 
     def draw_border(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the edges of the border with a program of their own."""
@@ -213,14 +231,15 @@ class PosedMesh:
         )
 
     def release(self) -> None:
-        """Release the bindings and the buffers, also the source's."""
+        """Release the bindings and the buffers, also the source's if it is its own."""
         for binding in self._bindings.values():
             binding.release()
         self._bindings.clear()
         if self._heat is not None:
             self._heat.release()
-        self._order.release()
-        self._source.release()
+        if self._is_owner:
+            self._order.buffer.release()
+            self._source.release()
 
 
 def _indices(triangles: Integers) -> bytes:

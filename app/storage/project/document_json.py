@@ -74,13 +74,13 @@ from app.storage.project.codecs import (
     verbatim,
 )
 from app.storage.project.earlier_schemas import update_schema
-from app.storage.project.members import LayerMembers
+from app.storage.project.members import LayerMembers, earlier_folder, layer_folder
 from app.storage.project.sounds import SOUND, with_sound_files
 from app.texts import N_, _, message_of
 from engine.domain import Domain
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
-SCHEMA = 5
+SCHEMA = 6
 EARLIER_BONES = N_(
     "Bones of {layers} keep their length from now on. Keys stay as they are until they are posed "
     "again, but frames between them may change."
@@ -403,8 +403,7 @@ DRAWING = record(
     Field("groups", list_of(GROUP), default=()),
     Field("is_merged", FLAG, default=False),
 )
-LAYER = record(
-    dict,
+LAYER_FIELDS = (
     Field("id", WHOLE),
     Field(
         "picture",
@@ -456,6 +455,13 @@ LAYER = record(
     Field("origin", optional(ORIGIN), default=None),
     Field("ik_parents", optional(WHOLE), default=None),
     Field("pole_side", WHOLE, default=0),
+)
+LAYER = record(
+    dict,
+    *LAYER_FIELDS,
+    Field("deform_group", optional(WHOLE), default=None),
+    # A member as it was before, with the same fields.
+    Field("before_bending", optional(record(dict, *LAYER_FIELDS)), default=None),
 )
 IMPORT_LOG = nested_record(
     ImportLog,
@@ -522,18 +528,26 @@ def read_document(
         note = _(EARLIER_BONES).format(layers=join_names(earlier))
         fields["import_log"] += ImportLog(notes=(note,))
     shared: dict[str, PictureFile] = {}
-    read = tuple(_read_layer(layer, archive, shared) for layer in layers)
+    read = tuple(
+        _read_layer(layer, LayerMembers(archive, layer_folder(layer["id"])), shared)
+        for layer in layers
+    )
     if not archive.is_written:
         require_memory(picture.size for picture in {layer.picture for layer in read})
     return Document(layers=(*known.values(), *read), **fields)
 
 
-def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, PictureFile]) -> Layer:
+def _read_layer(
+    fields: dict[str, Any], members: LayerMembers, shared: dict[str, PictureFile]
+) -> Layer:
     """Return the layer with these fields, its maps certified again.
 
     Its picture is taken from or added to `shared`, by checksum.
     """
-    members, made = LayerMembers(archive, fields["id"]), fields.pop("domain")
+    made, earlier, archive = fields.pop("domain"), fields.get("before_bending"), members.archive
+    if earlier is not None:
+        folder = earlier_folder(fields["id"])
+        fields["before_bending"] = _read_layer(earlier, LayerMembers(archive, folder), shared)
     picture = members.picture(**fields["picture"])
     same = shared.setdefault(picture.sha256, picture)
     if (same.suffix, same.size) == (picture.suffix, picture.size):

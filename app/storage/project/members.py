@@ -36,7 +36,13 @@ OTHER_CHECKSUM = N_("its picture is not the one that was saved: the checksums di
 
 
 def layer_members(layer: Layer) -> dict[str, bytes]:
-    """Return the members of a layer by their names."""
+    """Return the members of a layer by their names, with those of its mesh before it was bent."""
+    earlier = layer.before_bending
+    kept = {} if earlier is None else _members_in(earlier_folder(layer.id), earlier)
+    return _members_in(layer_folder(layer.id), layer) | kept
+
+
+def _members_in(folder: str, layer: Layer) -> dict[str, bytes]:
     mesh, cut_out, holes = layer.domain.mesh, layer.cut_out, layer.domain.holes
     arrays: dict[str, npt.NDArray[Any]] = {
         "outline.npy": layer.domain.outline,
@@ -66,19 +72,20 @@ def layer_members(layer: Layer) -> dict[str, bytes]:
             arrays |= {phi: pose.phi, psi: pose.psi}
             if holes:
                 arrays[logs] = pose.logs
-    folder = _folder(layer.id)
     picture = {f"{folder}/source{layer.picture.suffix}": layer.picture.data}
     return picture | {f"{folder}/{name}": array_member(array) for name, array in arrays.items()}
 
 
 class LayerMembers:
-    def __init__(self, archive: Archive, layer: int) -> None:
-        self._archive = archive
-        self._folder = _folder(layer)
+    """The members of a layer in a folder of an archive."""
+
+    def __init__(self, archive: Archive, folder: str) -> None:
+        self.archive = archive
+        self._folder = folder
 
     def picture(self, *, suffix: str, sha256: str, size: tuple[int, int]) -> PictureFile:
         """Return the picture, which must have the saved checksum and size."""
-        data = self._archive.read(f"{self._folder}/source{suffix}")
+        data = self.archive.read(f"{self._folder}/source{suffix}")
         picture = PictureFile(data=data, suffix=suffix, size=size)
         if picture.sha256 != sha256:
             raise LissomError(_(OTHER_CHECKSUM))
@@ -103,7 +110,7 @@ class LayerMembers:
                 ("vertices", MOST_MESH_TRIANGLES),
             )
         )
-        triangles = self._archive.triangles(
+        triangles = self.archive.triangles(
             f"{self._folder}/triangles.npy", most=MOST_MESH_TRIANGLES
         )
         domain = MeshedDomain(
@@ -113,18 +120,18 @@ class LayerMembers:
             holes=self._holes(),
             closed=self._points(CLOSED) if parted else None,
         )
-        if not self._archive.is_written:
+        if not self.archive.is_written:
             require_domain(domain)
         return domain
 
     def stiffness(self, domain: MeshedDomain) -> Floats:
         """Return the stiffness painted on the vertices of the domain's loops."""
         most = sum(map(len, domain.loops))
-        return self._archive.numbers(f"{self._folder}/{STIFFNESS}", most=most)
+        return self.archive.numbers(f"{self._folder}/{STIFFNESS}", most=most)
 
     def mask(self, size: tuple[int, int]) -> Mask:
         most = -(-size[0] * size[1] // 8)
-        return Mask(bits=self._archive.bytes(f"{self._folder}/mask.npy", most=most), size=size)
+        return Mask(bits=self.archive.bytes(f"{self._folder}/mask.npy", most=most), size=size)
 
     def lines(self, kind: Literal["strokes", "slits"], counts: Sequence[int]) -> list[Complexes]:
         """Return the points of the lines drawn by hand, with these numbers of points."""
@@ -149,7 +156,7 @@ class LayerMembers:
         )
 
     def _holes(self) -> tuple[Hole, ...]:
-        if not self._archive.has(f"{self._folder}/{CENTRES}"):
+        if not self.archive.has(f"{self._folder}/{CENTRES}"):
             return ()
         # A hole has at least three corners.
         centres = as_points(self._points(CENTRES, LARGEST_OUTLINE // 3), "hole_centres")
@@ -160,11 +167,16 @@ class LayerMembers:
         return tuple(holes)
 
     def _points(self, name: str, most: int = LARGEST_OUTLINE) -> Complexes:
-        return self._archive.points(f"{self._folder}/{name}", most=most)
+        return self.archive.points(f"{self._folder}/{name}", most=most)
 
 
-def _folder(layer: int) -> str:
+def layer_folder(layer: int) -> str:
     return f"layers/{layer}"
+
+
+def earlier_folder(layer: int) -> str:
+    """Return the folder of a member of a deform group as it was before."""
+    return f"layers/{layer}/before"
 
 
 def _of_hole(index: int) -> tuple[str, str]:

@@ -249,7 +249,7 @@ def members_by_their_present_names(path):
     members = read_members(path)
     content = JsonObject(renamed(json.loads(members.pop("project.json"))), "project.json")
     update_schema(content)
-    content["schema"] = 5
+    content["schema"] = 6
     for layer in content["layers"]:
         for channel in layer.get("channels", ()):
             for key in channel["keys"] if channel["kind"] == "transform" else ():
@@ -421,7 +421,7 @@ def test_the_layout_of_the_file(tmp_path, members):
     phi = np.load(io.BytesIO(members["layers/0/keys/00001.phi.npy"]), allow_pickle=False)
     assert phi.tobytes() == full_document().layers[0].keys[1].pose.phi.tobytes()
     content = json.loads(members["project.json"])
-    assert content["schema"] == 5
+    assert content["schema"] == 6
     assert content["app_version"].count(".") >= 1
     assert list(content) == sorted(content)
     keys = content["layers"][0]["keys"]
@@ -674,13 +674,13 @@ def test_there_may_be_no_thumbnail(tmp_path):
 
 
 def test_a_newer_schema_is_refused_by_its_version(tmp_path, members):
-    newer = with_json(with_json(members, "schema", value=6), "app_version", value="9.1")
-    with pytest.raises(LissomError, match=says(NEWER_LISSOM, version="9.1", schema=6)):
+    newer = with_json(with_json(members, "schema", value=7), "app_version", value="9.1")
+    with pytest.raises(LissomError, match=says(NEWER_LISSOM, version="9.1", schema=7)):
         load_project(pack(tmp_path / "a", newer))
 
 
 def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
-    text = json.dumps({"schema": 7, "app_version": "9.1"}).encode()
+    text = json.dumps({"schema": 8, "app_version": "9.1"}).encode()
     members = {"mimetype": MIMETYPE, "project.json": text}
     with pytest.raises(LissomError, match=says(NEWER_LISSOM)):
         load_project(pack(tmp_path / "a", members))

@@ -5,11 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document.channels.kinds import LAYER_KINDS, VISIBILITY
+from app.document.channels.kinds import VISIBILITY
 from app.document.commands.command import command, layer_command, with_number
 from app.document.commands.handle_commands import with_handles
 from app.document.commands.layers import switch_group_commands
 from app.document.commands.layers.hidden import with_layer_shown
+from app.document.commands.layers.removal import without_layer
 from app.document.keyframe import Pose, Target
 from app.document.layer import Layer
 from app.document.layers.attachments import Attachment
@@ -88,15 +89,19 @@ def duplicate_layer(document: Document, identity: int) -> Document:
 
 @command(_("Delete layer"))
 def remove_layer(document: Document, identity: int) -> Document:
-    """Delete a layer, and the keys of other layers that refer to the layer."""
-    document.layer(identity)
-    if len(document.layers) == 1:
+    """Delete a layer, and the keys of other layers that refer to the layer.
+
+    A deform group is deleted with its members, and without members it is deleted, too.
+    """
+    by = document.layer(identity).deform_group
+    if by is not None and len(document.deform_members(by)) == 1:
+        identity = by
+    gone = [*(each.id for each in document.deform_members(identity)), identity]
+    if len(document.layers) == len(gone):
         raise LissomError(_(LAST_LAYER))
-    document = switch_group_commands.without_switch_member(document, identity)
-    layers = tuple(
-        _without_references_to(each, identity) for each in document.layers if each.id != identity
-    )
-    return without_empty_groups(replace(document, layers=layers, size=document.canvas))
+    for each in gone:
+        document = without_layer(document, each)
+    return without_empty_groups(document)
 
 
 @command(_("Move layer"))
@@ -256,27 +261,6 @@ def group_at(others: Sequence[Layer], index: int, layer: Layer) -> str:
     shared = max((common_path(own, each.group) for each in others), key=len, default="")
     # A layer leaves groups whose other members all lie elsewhere; it keeps a group of its own.
     return own if stays == shared else stays
-
-
-def _without_references_to(layer: Layer, other: int) -> Layer:
-    """Return a layer without attachments, draw order keys and drivers of another layer."""
-    sliders = tuple(
-        replace(each, driver=None) if each.driver == other else each for each in layer.sliders
-    )
-    if sliders != layer.sliders:
-        layer = replace(layer, sliders=sliders)
-    joints = tuple(joint for joint in layer.attachments if joint.parent != other)
-    if joints != layer.attachments:
-        layer = replace(layer, attachments=joints)
-    for (name, part), keys in layer.channels.items():
-        kind = LAYER_KINDS[name]
-        left = (
-            key
-            for key in keys
-            if not any(kind.field_of(key.value, each) == other for each in kind.layer_fields)
-        )
-        layer = layer.with_keys_of(kind, left, part)
-    return layer
 
 
 def _with(document: Document, identity: int, **changes: object) -> Document:

@@ -33,7 +33,8 @@ def group_runs(layers: Sequence[Layer], depth: int) -> list[tuple[str, list[Laye
 
 def clip_stacks(document: Document) -> tuple[ClipStack, ...]:
     """Return the clipping bases of a document with their clipped layers."""
-    return tuple(_clip_stacks(document, document.layers, 0))
+    drawn = [each for each in document.layers if not document.is_deform_group(each.id)]
+    return tuple(_clip_stacks(document, drawn, 0))
 
 
 def without_foreign_clips(document: Document, identities: Collection[int]) -> Document:

@@ -72,7 +72,12 @@ def composite_layers(
     `drawn` has the visible layers by id. Each run of a group is composited separately. Layers
     clipped to an invisible base are invisible.
     """
-    return _parts(_Painted(document, drawn, frame), layers_in_draw_order(document, frame), 0)
+    layers = [
+        each
+        for each in layers_in_draw_order(document, frame)
+        if not document.is_deform_group(each.id)
+    ]
+    return _parts(_Painted(document, drawn, frame), layers, 0)
 
 
 def _effects(document: Document, layer: Layer, frame: float) -> Mapping[str, Any]:

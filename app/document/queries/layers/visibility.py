@@ -22,8 +22,16 @@ def visibility_keys(document: Document, layer: Layer) -> tuple[Key[bool], ...]:
 
     Without keys, the layer is always visible. A hidden group hides its layers. A switch group alone
     decides the visibility of its members. A layer in a group of a switch is visible while the group
-    is chosen and its own keys show it.
+    is chosen and its own keys show it. A member of a deform group is visible while both are.
     """
+    if layer.deform_group is None:
+        return _own_visibility_keys(document, layer)
+    group = _own_visibility_keys(document, document.deform_layer(layer))
+    own = _own_visibility_keys(document, layer)
+    return _both(group, own) if group and own else group or own
+
+
+def _own_visibility_keys(document: Document, layer: Layer) -> tuple[Key[bool], ...]:
     if document.is_in_hidden(layer):
         return HIDDEN
     switches, first = document.switches_around(layer), document.frames.first

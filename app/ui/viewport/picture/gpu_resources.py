@@ -7,7 +7,7 @@ import numpy as np
 from app.document import Layer, stiffness_source
 from app.editor import HeatMap, Project
 from app.motion import DeformMesh, LayerFrame, Vertices
-from app.render import DrawnMesh, Renderer, shader_is_faster
+from app.render import DrawnMesh, MemberMesh, Renderer, shader_is_faster
 from app.render.gpu.mesh import GpuMesh, PosedMesh
 from app.render.gpu.picture import GpuPicture
 from app.storage import Picture, release_pages
@@ -40,8 +40,10 @@ class GpuResources:
         # By layer id and picture: a layer's picture may be replaced, and ids are reused after a
         # layer is deleted. Layers without a cut-out share a picture under the id None.
         self._pictures: dict[tuple[int | None, Picture], GpuPicture] = {}
-        self._meshes: dict[DeformMesh, GpuMesh] = {}
-        self._drawn_meshes: dict[tuple[DeformMesh, int], DrawnMesh] = {}
+        self._meshes: dict[tuple[DeformMesh, int], GpuMesh] = {}  # by mesh and layer
+        # By mesh, number and layer. Members of a deform group follow the first one drawn.
+        self._drawn_meshes: dict[tuple[DeformMesh, int, int], DrawnMesh | MemberMesh] = {}
+        self._leaders: dict[tuple[DeformMesh, int], DrawnMesh] = {}
         self._ghosts: dict[tuple[int, int], tuple[object, Vertices]] = {}
         self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
         self._cut_view: CutView | None = None
@@ -57,16 +59,21 @@ class GpuResources:
             self._measured = texture, measure_brightness(texture)
         return self._measured[1]
 
-    def drawn_mesh(self, layer: int, mesh: DeformMesh, number: int = 0) -> DrawnMesh:
+    def drawn_mesh(self, layer: int, mesh: DeformMesh, number: int = 0) -> DrawnMesh | MemberMesh:
         """Return the copy of a layer's mesh with this number. Each copy has its own pose."""
-        if mesh in self._meshes and self._meshes[mesh].picture is not self.picture(layer):
+        known = self._meshes.get((mesh, layer))
+        if known is not None and known.picture is not self.picture(layer):
             # The cut-out status of the picture may have changed.
-            self.release_but(self._meshes.keys() - {mesh})
-        if (mesh, number) not in self._drawn_meshes:
-            by_shader = shader_is_faster(self._renderer.programs.context)
-            drawn = DrawnMesh(self._mesh(layer, mesh), by_shader=by_shader)
-            self._drawn_meshes[mesh, number] = drawn
-        return self._drawn_meshes[mesh, number]
+            self.release_but({each for each, _layer in self._meshes} - {mesh})
+        if (mesh, number, layer) not in self._drawn_meshes:
+            leader, gpu_mesh = self._leaders.get((mesh, number)), self._mesh(layer, mesh)
+            if leader is None:
+                by_shader = shader_is_faster(self._renderer.programs.context)
+                drawn = self._leaders[mesh, number] = DrawnMesh(gpu_mesh, by_shader=by_shader)
+                self._drawn_meshes[mesh, number, layer] = drawn
+            else:
+                self._drawn_meshes[mesh, number, layer] = MemberMesh(gpu_mesh, leader)
+        return self._drawn_meshes[mesh, number, layer]
 
     def ghost(
         self, layer: int, number: int, of: object, find: Callable[[], Vertices | None]
@@ -122,12 +129,14 @@ class GpuResources:
         return known[2]
 
     def release_but(self, meshes: Collection[DeformMesh]) -> None:
-        for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
-            self._drawn_meshes.pop((mesh, number)).release()
+        # Members after their leader come first.
+        for key in [key for key in reversed(self._drawn_meshes) if key[0] not in meshes]:
+            self._drawn_meshes.pop(key).release()
+            self._leaders.pop(key[:2], None)
             self._heated.clear()
             self._ghosts.clear()
-        for mesh in [mesh for mesh in self._meshes if mesh not in meshes]:
-            self._meshes.pop(mesh).release()
+        for known in [known for known in self._meshes if known[0] not in meshes]:
+            self._meshes.pop(known).release()
 
     def cut_view(self) -> CutView:
         """Return the view of the active layer while it is cut out."""
@@ -148,16 +157,16 @@ class GpuResources:
             picture.release()
 
     def _mesh(self, layer: int, mesh: DeformMesh) -> GpuMesh:
-        if mesh not in self._meshes:
+        if (mesh, layer) not in self._meshes:
             drawn = mesh.domain.mesh
-            self._meshes[mesh] = GpuMesh(
+            self._meshes[mesh, layer] = GpuMesh(
                 self._renderer.programs,
                 self.picture(layer),
                 rest=drawn.vertices - self.project.document.layer(layer).corner,
                 triangles=drawn.triangles,
                 seam=find_closed_cuts(mesh.domain),
             )
-        return self._meshes[mesh]
+        return self._meshes[mesh, layer]
 
     @property
     def picture_count(self) -> int:

@@ -40,6 +40,7 @@ def make_ghosts(session: Session, project: Project, drawing: GpuResources) -> tu
             poses = {
                 layer.id: _ghost(project, drawing, layer, now, at, number)
                 for layer in project.document.layers
+                if not project.document.is_deform_group(layer.id)
             }
             seen = {layer: pose for layer, pose in poses.items() if pose is not None}
             if seen:
@@ -62,7 +63,9 @@ def _ghost(
 
     If a parent layer has just moved, the ghost is omitted until its place is computed.
     """
-    document, runtime = project.document, project.runtimes.layers[layer.id]
+    document = project.document
+    bent = document.deform_layer(layer).id
+    runtime = project.runtimes.layers[bent]
     # During a drag, in-betweens arrive later. Until then the last ones stay.
     known = runtime.store.whole
     if known is None or (at not in known.frames and not known.loop):
@@ -81,7 +84,7 @@ def _ghost(
     correction = runtime.corrected.at(known, at) if runtime.corrected else None
     find = partial(runtime.store.vertices, known, at, correction=correction)
     of = runtime.store.mesh, known, at, correction
-    vertices = drawing.ghost(layer.id, number, of, find)
+    vertices = drawing.ghost(bent, number, of, find)
     if vertices is None:
         return None
     drawn = drawing.drawn_mesh(layer.id, runtime.store.mesh, number)
@@ -95,7 +98,7 @@ def count_meshes_behind(session: Session, project: Project, meshes: int) -> int:
     document, shows = project.document, project.runtimes.layers
     frame = max((each.shown.frame for each in shows.values() if each.shown), default=0)
     still = {
-        each.id: each.still and not each.keys_of(TRANSFORM)
+        each.id: each.still and each.deform_group is None and not each.keys_of(TRANSFORM)
         for each in document.layers
         if (shown := shows[each.id].shown) is not None
         and is_visible(document, each, shown.frame)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from app.document import Pose
 from app.editor import Project, Session
 from app.motion import DeformMesh, VertexArray, bounding_box
-from app.render import Backdrop, DrawnMesh, Renderer, Scene, fit_view
+from app.render import Backdrop, DrawnMesh, MemberMesh, Renderer, Scene, fit_view
 from app.render.gpu.target import RenderTarget
 from app.ui.style.theme import PALETTES
 from app.ui.viewport.marks import to_rgba
@@ -35,7 +35,10 @@ class PosePictures:
         return None if target is None else target.texture.glo
 
     def draw(
-        self, session: Session, project: Project, posable: Callable[[int, DeformMesh], DrawnMesh]
+        self,
+        session: Session,
+        project: Project,
+        posable: Callable[[int, DeformMesh], DrawnMesh | MemberMesh],
     ) -> None:
         """Draw the poses requested in this frame, and release the others.
 

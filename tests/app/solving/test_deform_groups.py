@@ -1,0 +1,256 @@
+"""Several layers as members of one mesh: bent as one, drawn apart, saved, and parted again."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from layered import openraster
+from numpy.testing import assert_allclose
+from PIL import Image, ImageDraw
+
+from app.document import (
+    OPACITY,
+    VISIBILITY,
+    Attachment,
+    Document,
+    ExportSettings,
+    Meshing,
+    deform_group_commands,
+    handle_commands,
+    key_commands,
+    layer_commands,
+)
+from app.document.keyframe import Target
+from app.errors import LissomError
+from app.export import ExportRequest, FrameRenderer, plan_export
+from app.motion import Evaluator
+from app.render.gpu.context import create_context
+from app.solving import DragSolver, Rig, bend_as_one, part_deform_group
+from app.storage import (
+    Picture,
+    cut_picture,
+    load_project,
+    make_still_layer,
+    open_layered,
+    save_project,
+)
+
+SIZE = (200, 120)
+MESHING = Meshing(triangles=1_000, detail="coarse")
+BODY = [(30, 60), (60, 30), (140, 30), (170, 60), (140, 90), (60, 90)]
+
+
+def drawn(paint):
+    image = Image.new("RGBA", SIZE)
+    paint(ImageDraw.Draw(image))
+    return image
+
+
+INK = drawn(lambda draw: draw.line([*BODY, BODY[0]], fill=(20, 10, 30, 255), width=4))
+SHADE = drawn(lambda draw: draw.rectangle((60, 62, 140, 88), fill=(60, 20, 120, 130)))
+COLOUR = drawn(lambda draw: draw.polygon(BODY, fill=(240, 150, 60, 255)))
+BUBBLE = drawn(lambda draw: draw.ellipse((90, 40, 130, 80), fill=(80, 200, 240, 255)))
+SKY = Image.new("RGBA", SIZE, (210, 230, 250, 255))
+STACK = {"ink": INK, "bubble": BUBBLE, "shade": SHADE, "colour": COLOUR, "sky": SKY}
+NAMES = ("colour", "shade", "ink")
+
+
+@pytest.fixture(scope="module")
+def opened(tmp_path_factory):
+    path = tmp_path_factory.mktemp("group") / "fish.ora"
+    tags = "".join(
+        f'<layer name="{name}" src="data/{number}.png" x="0" y="0"/>'
+        for number, name in enumerate(STACK)
+    )
+    path.write_bytes(openraster(SIZE, tags, [*STACK.values()]))
+    return open_layered(path, MESHING)
+
+
+@pytest.fixture(scope="module")
+def bent(opened):
+    """Colour, shade and ink as members of a posed deform group, and all pictures by layer id."""
+    document, pictures = opened.document, dict(opened.pictures)
+    made = bend_as_one(document, ids(document, NAMES), pictures, name="fish")
+    assert made.notices == ()
+    document = made.command(document)
+    pictures[made.group.id] = made.picture
+    return posed(document, made.group.id), pictures
+
+
+def by_name(document, name):
+    return next(layer for layer in document.layers if layer.name == name)
+
+
+def ids(document, names):
+    return [by_name(document, name).id for name in names]
+
+
+def posed(document, identity, to=168 + 100j):
+    """Return a document with two handles on a layer, and a key at frame 10 that bends it."""
+    for place in (32 + 60j, 168 + 60j):
+        document = handle_commands.add_handle(identity, place)(document)
+    layer = document.layer(identity)
+    targets = {handle.id: Target(position=handle.position) for handle in layer.handles}
+    targets[layer.handles[-1].id] = Target(position=to)
+    drag = DragSolver.begin(Rig.of(layer), layer.keys[0].pose).step_towards(targets, 60)
+    return key_commands.insert_key(identity, 10, drag.make_pose(targets))(document)
+
+
+def frames(document: Document, pictures: dict[int, Picture], *times: float) -> list[np.ndarray]:
+    """Return frames of a document on clear ground, straight alpha."""
+    settings = ExportSettings(format="picture", framing="canvas")
+    request = ExportRequest(out=Path("a.png"), settings=settings, project="fish")
+    evaluator, context = Evaluator.exact(document), create_context()
+    textures = {
+        layer.id: cut_picture(pictures[layer.id], layer.cut_out).texture
+        for layer in document.layers
+    }
+    plan = plan_export(document, request, evaluator)
+    renderer = FrameRenderer(context, document, textures, evaluator, plan)
+    found = [renderer.draw(renderer.pose(time)) for time in times]
+    renderer.release()
+    context.release()
+    return found
+
+
+def premultiplied(pixels):
+    return pixels[..., :3] * (pixels[..., 3:] / 255)
+
+
+def test_members_move_as_one_flattened_picture(bent):
+    document, pictures = bent
+    group = by_name(document, "fish")
+    for name in ("sky", "bubble"):
+        document = layer_commands.remove_layer(by_name(document, name).id)(document)
+    flat = Image.new("RGBA", SIZE)
+    for each in (COLOUR, SHADE, INK):
+        flat.alpha_composite(each)
+    # The group's own picture, drawn alone on the same mesh.
+    alone = replace(document, layers=(group,), size=document.canvas)
+    apart = frames(document, pictures, 0, 5, 10)
+    whole = frames(alone, pictures, 0, 5, 10)
+    assert_allclose(premultiplied(whole[0]), premultiplied(np.asarray(flat)), atol=2)
+    assert (apart[2] != apart[0]).any(axis=-1).sum() > 2_000
+    for one, other in zip(apart, whole, strict=True):
+        # Filtered before or after compositing, pixels of edges differ by some levels.
+        difference = np.abs(premultiplied(one) - premultiplied(other))
+        assert difference.mean() < 0.2
+        assert (difference > 24).mean() < 2e-3
+
+
+def test_a_layer_between_two_members_stays_between_them(bent):
+    document, pictures = bent
+    (frame,) = frames(document, pictures, 0)
+    below, through = frame[120 - 50, 110], frame[120 - 50, 145]
+    assert below.tolist() == [80, 200, 240, 255]
+    assert through.tolist() != below.tolist()
+    ink = by_name(document, "ink")
+    above = layer_commands.move_layer(by_name(document, "bubble").id, 5)(document)
+    assert by_name(above, "ink").deform_group == ink.deform_group
+    hidden = layer_commands.set_hidden(ink.deform_group, hidden=True)(document)
+    (rest,) = frames(hidden, pictures, 0)
+    assert rest[60, 45].tolist() == [210, 230, 250, 255]
+
+
+def test_members_have_opacity_blend_and_visibility_of_their_own(bent):
+    document, pictures = bent
+    colour, shade = by_name(document, "colour"), by_name(document, "shade")
+    faded = document.with_layer(colour.with_keys_of(OPACITY, (OPACITY.key(0, 0.5),)))
+    faded = layer_commands.set_blend(shade.id, "multiply")(faded)
+    faded = layer_commands.key_visibility(shade.id, 5, visible=False)(faded)
+    shown, gone = frames(faded, pictures, 0, 6)
+    sky, orange = np.array([210, 230, 250]), np.array([240, 150, 60])
+    assert_allclose(shown[50, 80, :3], (sky + orange) / 2, atol=2)
+    below = (sky + orange) / 2
+    purple, alpha = np.array([60, 20, 120]), 130 / 255
+    expected = (1 - alpha) * below + alpha * below * purple / 255
+    assert_allclose(shown[75, 80, :3], expected, atol=2)
+    assert (VISIBILITY.name, None) in by_name(faded, "shade").channels
+    assert_allclose(gone[75, 80, :3], below, atol=2)
+
+
+def test_a_group_is_solved_and_moved_once(bent):
+    document, _ = bent
+    group = by_name(document, "fish")
+    evaluator = Evaluator.exact(document)
+    assert group.id in evaluator.layers
+    assert not evaluator.layers.keys() & {*ids(document, NAMES)}
+    scene = evaluator.evaluate(document, 5)
+    shared = {id(scene.layers[each].vertices) for each in ids(document, NAMES)}
+    assert len(shared) == 1
+    assert group.id not in scene.layers
+
+
+def test_projects_keep_groups_and_what_members_had(bent, tmp_path):
+    document, pictures = bent
+    save_project(tmp_path / "a.lissom", document)
+    again = load_project(tmp_path / "a.lissom")
+    before, after = frames(document, pictures, 5), frames(again, pictures, 5)
+    assert (before[0] == after[0]).all()
+    ink = by_name(again, "ink")
+    assert ink.before_bending is not None
+    assert not ink.before_bending.still
+    assert ink.before_bending.picture is ink.picture
+
+
+def test_parting_gives_back_meshes_handles_and_keys(opened):
+    document, pictures = opened.document, opened.pictures
+    ink = by_name(document, "ink")
+    document = posed(document, ink.id, 168 + 75j)
+    colour, bubble = by_name(document, "colour"), by_name(document, "bubble")
+    joint = Attachment(parent=colour.id, parent_point=110 + 60j)
+    document = layer_commands.attach_layer(bubble.id, 110 + 60j, joint)(document)
+    rigged = document.layer(ink.id)
+    made = bend_as_one(document, ids(document, NAMES), pictures)
+    group = made.command(document)
+    whole = group.layer(made.group.id)
+    assert [handle.position for handle in whole.handles] == [
+        handle.position for handle in rigged.handles
+    ]
+    assert [key.frame for key in whole.keys] == [0, 10]
+    assert group.layer(bubble.id).attachments[0].parent == whole.id
+    changed = layer_commands.set_opacity(ink.id, 0.5)(group)
+    command, notices = part_deform_group(changed, whole.id, pictures)
+    parted = command(changed)
+    assert notices == ()
+    assert [layer.name for layer in parted.layers] == [layer.name for layer in document.layers]
+    assert parted.layer(ink.id).keys == rigged.keys
+    assert parted.layer(ink.id).opacity == 0.5
+    assert parted.layer(bubble.id).attachments[0].parent in {*ids(document, NAMES)}
+    assert not any(layer.deform_group for layer in parted.layers)
+
+
+def test_members_have_no_motion_of_their_own(bent):
+    document, _ = bent
+    ink, group = by_name(document, "ink"), by_name(document, "fish")
+    joint = Attachment(parent=by_name(document, "bubble").id, parent_point=110 + 60j)
+    with pytest.raises(LissomError, match="member of a deform group"):
+        layer_commands.attach_layer(ink.id, ink.pivot, joint)(document)
+    with pytest.raises(LissomError, match="attach it to the deform group"):
+        layer_commands.attach_layer(
+            by_name(document, "bubble").id, 110 + 60j, replace(joint, parent=ink.id)
+        )(document)
+    with pytest.raises(LissomError, match="neither still nor a member"):
+        layer_commands.replace_layer(group.id, make_still_layer(group))(document)
+
+
+def test_groups_are_copied_and_deleted_with_their_members(bent):
+    document, _ = bent
+    group = by_name(document, "fish")
+    two = deform_group_commands.duplicate_deform_group(group.id)(document)
+    copy = by_name(two, "fish copy")
+    assert [each.name for each in two.deform_members(copy.id)] == [f"{name} copy" for name in NAMES]
+    one = layer_commands.remove_layer(copy.id)(two)
+    assert [each.name for each in one.layers] == [each.name for each in document.layers]
+    for name in NAMES:
+        one = layer_commands.remove_layer(by_name(one, name).id)(one)
+    assert [each.name for each in one.layers] == ["sky", "bubble"]
+
+
+def test_layers_that_cannot_be_members_are_refused(bent):
+    document, pictures = bent
+    with pytest.raises(LissomError, match="at least two"):
+        bend_as_one(document, ids(document, ["bubble"]), pictures)
+    with pytest.raises(LissomError, match="ink"):
+        bend_as_one(document, ids(document, ["bubble", "ink"]), pictures)
