@@ -33,7 +33,7 @@ def list_standard_shortcuts() -> tuple[BrowserShortcut, ...]:
     """Return the home folder and its usual subfolders, if they exist."""
     home = home_folder()
     named = _named_by_desktop(home)
-    places = [BrowserShortcut(home, _("Home"), icons.ICON_FA_HOUSE)]
+    places = [BrowserShortcut(home, _("Home folder"), icons.ICON_FA_HOUSE)]
     for name, key, icon in FOLDERS:
         folder = named.get(key, home / name)
         if folder != home and _is_there(folder):

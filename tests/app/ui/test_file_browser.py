@@ -341,7 +341,11 @@ def test_places_and_recent_folders_are_one_click_away(window, show, folder, monk
     recent = (folder / "drawings" / "cow.png", folder / "drawings" / "b.png", home / "no" / "c.png")
     session = window.session
     session.settings.prefer(recent=recent)
-    assert [place.name for place in list_standard_shortcuts()] == ["Home", "Desktop", "Bilder"]
+    assert [place.name for place in list_standard_shortcuts()] == [
+        "Home folder",
+        "Desktop",
+        "Bilder",
+    ]
     assert [place.folder for place in list_recent_shortcuts(recent)] == [folder / "drawings"]
     show()
     window.run(lambda robot: robot.item_click("//###dialog/**/###Places 2"))
