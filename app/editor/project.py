@@ -82,14 +82,19 @@ class Project(Revised):
         return self.document.layer(self.selection.active)
 
     @property
+    def listed_layer(self) -> Layer:
+        """The layer that is selected in the list: the active one, or a member of it."""
+        return self.document.layer(self.selection.listed)
+
+    @property
     def tree(self) -> tuple[TreeRow, ...]:
         """Rows of the layer list, the front layer on top."""
-        return self.layer_list.rows(self.document, self.selection.active)
+        return self.layer_list.rows(self.document, self.selection.listed)
 
     @property
     def selected_layers(self) -> tuple[int, ...]:
-        """Ids of the selected layers from front to back, with the active layer."""
-        chosen = self.selection.other_layers | {self.selection.active}
+        """Ids of the selected layers from front to back, with the listed layer."""
+        chosen = self.selection.other_layers | {self.selection.listed}
         return tuple(each.id for each in reversed(self.document.layers) if each.id in chosen)
 
     @property
@@ -116,7 +121,7 @@ class Project(Revised):
     def channel(self) -> Channel[Any]:
         """The selected channel: of the scene or of the active layer, by default its poses."""
         chosen, active = self.selection.channel, self.selection.active
-        is_shown = chosen is not None and chosen.layer in (None, active)
+        is_shown = chosen is not None and chosen.layer in (None, active, self.selection.listed)
         is_keyed = chosen is not None and bool(keys_in(self.document, chosen))
         return chosen if chosen is not None and is_shown and is_keyed else pose_channel(active)
 

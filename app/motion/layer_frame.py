@@ -184,9 +184,9 @@ def evaluate_layer(
 def member_frame(group: LayerFrame, clip: Clip, earlier: LayerFrame | None = None) -> LayerFrame:
     """Return the frame of a deform group's member: the same vertices for another picture.
 
-    Without a change it is the `earlier` object.
+    Its own layer has neither the pose nor the handles. Without a change it is the `earlier` object.
     """
-    made = replace(group, clip=clip)
+    made = replace(group, clip=clip, pose=None, correction=None)
     if earlier is not None and all(
         getattr(earlier, each.name) is (now := getattr(made, each.name))
         or (each.name in {"clip", "frame", "placement"} and getattr(earlier, each.name) == now)

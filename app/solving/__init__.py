@@ -5,10 +5,13 @@ Out: certified poses.
 Imports: `app.motion`, `app.storage`.
 """
 
-from app.solving.deform_groups import (
+from app.solving.deform_group.bending import (
     BendingAsOne as BendingAsOne,
     bend_as_one as bend_as_one,
+)
+from app.solving.deform_group.rebuilding import (
     part_deform_group as part_deform_group,
+    replace_member_picture as replace_member_picture,
 )
 from app.solving.drag.drag_solver import DragSolver as DragSolver
 from app.solving.drag.rig import Rig as Rig

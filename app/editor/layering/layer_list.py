@@ -9,6 +9,7 @@ from app.document import (
     ancestor_paths,
     combine_commands,
     common_path,
+    deform_group_commands,
     group_commands,
     is_visible,
     layer_commands,
@@ -209,7 +210,7 @@ def toggle_visibility_key(session: Session, project: Project, identity: int) -> 
 @with_project
 def note_listed_layer(_: Session, project: Project) -> None:
     """Note that the list of layers has scrolled to the active layer."""
-    project.layer_list.note_listed(project.selection.active)
+    project.layer_list.note_listed(project.selection.listed)
 
 
 @with_project
@@ -222,12 +223,16 @@ def ask_layer_name(_: Session, project: Project, identity: int | None) -> None:
 @with_project
 def rename_active_layer(session: Session, project: Project) -> None:
     session.display.focus_panel("Layers")
-    ask_layer_name(session, project.selection.active)
+    ask_layer_name(session, project.selection.listed)
 
 
 @with_project
 def duplicate_layer(session: Session, project: Project, identity: int) -> None:
     """Put a copy of a layer in front of it, and select the copy."""
     free = layer_commands.next_layer_id(project.document)
-    editing.edit_document(session, layer_commands.duplicate_layer(identity))
+    is_group = project.document.is_deform_group(identity)
+    copy = (
+        deform_group_commands.duplicate_deform_group if is_group else layer_commands.duplicate_layer
+    )
+    editing.edit_document(session, copy(identity))
     set_active_layer(session, free)

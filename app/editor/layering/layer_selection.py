@@ -6,20 +6,24 @@ from app.editor.session import Session, with_project
 
 @with_project
 def set_active_layer(session: Session, project: Project, identity: int) -> None:
-    """Make a layer active: its handles and keys are shown and edited."""
+    """Make a layer active: its handles and keys are shown and edited.
+
+    A member is selected in the list, and the deform group that bends it is active.
+    """
     before = project.selection.active
-    if identity != before:
+    bent = project.document.deform_layer(project.document.layer(identity)).id
+    if bent != before:
         project.history.interrupt()
         project.layer_list.linger(before)
         project.layer_setup.forget_previews()
         session.tools.hover(None)
-    project.selection.activate_layer(identity)
+    project.selection.activate_layer(bent, None if bent == identity else identity)
 
 
 @with_project
 def select_layers(session: Session, project: Project, *identities: int) -> None:
-    """Select layers; the active layer stays active if it is among them."""
-    if project.selection.active not in identities:
+    """Select layers; the listed layer stays active if it is among them."""
+    if project.selection.listed not in identities:
         set_active_layer(session, identities[0])
     project.selection.select_other_layers(frozenset(identities))
 
@@ -38,7 +42,7 @@ def toggle_layers_selected(session: Session, project: Project, *identities: int)
 def select_layers_up_to(session: Session, project: Project, identity: int) -> None:
     """Select the listed layers from the active one to another one."""
     listed = [row.layer.id for row in project.tree if row.layer is not None]
-    ends = sorted((listed.index(project.selection.active), listed.index(identity)))
+    ends = sorted((listed.index(project.selection.listed), listed.index(identity)))
     select_layers(session, *listed[ends[0] : ends[1] + 1])
 
 
@@ -56,5 +60,12 @@ def reset_tree_rows(_: Session, project: Project) -> None:
 
 @with_project
 def solo_layers(_: Session, project: Project, *identities: int) -> None:
-    """Show only these layers while editing, or all again; exports ignore solo."""
-    project.layer_list.toggle_solo(frozenset(identities))
+    """Show only these layers while editing, or all again; exports ignore solo.
+
+    A deform group is shown by its members, and goes with them.
+    """
+    document, shown = project.document, set(identities)
+    for each in identities:
+        shown |= {member.id for member in document.deform_members(each)}
+        shown.add(document.deform_layer(document.layer(each)).id)
+    project.layer_list.toggle_solo(frozenset(shown))

@@ -18,7 +18,7 @@ from app.document import (
 from app.editor import pending_changes
 from app.editor.action import do
 from app.editor.actions import editing, playback
-from app.editor.layering.layer_selection import set_active_layer
+from app.editor.layering.deform_groups import moving_layers
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
@@ -63,6 +63,7 @@ def attach_layer(
     place : complex, optional
         The joint, in the scene. The default is the anchor, or the middle of the overlap.
     """
+    child, parent = (moving_layers(project.document, [each])[0] for each in (child, parent))
     if is_same_or_descendant(project, parent, child):
         names = [project.document.layer(identity).name for identity in (parent, child)]
         session.notices.show(
@@ -85,13 +86,16 @@ def attach_layer(
 def attach_layers(session: Session, project: Project, parent: int, *children: int) -> None:
     """Attach layers to a parent; descendants of these layers move with them."""
     frame = playback.current_frame(session, project)
-    whole = [child for child in children if child != parent]
+    (parent,) = moving_layers(project.document, [parent])
+    whole = [child for child in moving_layers(project.document, children) if child != parent]
     carried = {
         child
         for child in whole
         if any(other != child and is_same_or_descendant(project, child, other) for other in whole)
     }
     free = [child for child in whole if child not in carried]
+    if not free:
+        return
     circles = [child for child in free if is_same_or_descendant(project, parent, child)]
     if circles or len(free) == 1:
         attach_layer(session, (circles or free)[0], parent)
@@ -196,43 +200,7 @@ def delete_parent_key(session: Session, _: Project, child: int, frame: int) -> N
     editing.edit_document(session, channel_commands.delete_keys(keys))
 
 
-@with_project
-def delete_layers(session: Session, project: Project, *identities: int) -> None:
-    """Delete layers; their children attach to their parents, and nothing moves now."""
-    gone, layers = set(identities), project.document.layers
-    if len(gone) == len(layers):
-        text = _("A scene needs at least one layer. Add another layer first.")
-        session.notices.show(text, tone="error")
-    elif any(joint.parent in gone for layer in layers for joint in layer.attachments):
-        pending_changes.run_when_idle(
-            session, do(_reparent_children, *identities), _("Delete layer")
-        )
-    else:
-        _delete(session, identities, [])
-
-
-@with_project
-def _reparent_children(session: Session, project: Project, *identities: int) -> None:
-    """Find new parents for the children of deleted layers, and delete the layers."""
-    document, siblings = project.document, project.samplers
-    frame = playback.current_frame(session, project)
-
-    def find() -> list[Command]:
-        joints = ParentTransforms(document, siblings)
-        layers = [layer.id for layer in document.layers if layer.id not in identities]
-        return [_reparent_child_command(joints, child, identities, frame) for child in layers]
-
-    def done(inherited: list[Command]) -> None:
-        if project.document is document:
-            _delete(session, identities, inherited)
-        else:
-            text = _("Nothing was deleted: the project changed meanwhile. Try again.")
-            session.notices.show(text)
-
-    pending_changes.begin_pending_change(session, project, ATTACHING, find, done)
-
-
-def _reparent_child_command(
+def reparent_child_command(
     joints: ParentTransforms, child: int, gone: Collection[int], frame: int
 ) -> Command:
     """Return the command that replaces a child's deleted parents by remaining ancestors.
@@ -280,21 +248,3 @@ def _detach_command(document: Document, child: int, frame: int, placement: Simil
     own = transform_at(document, document.layer(child), frame)
     commands.append(layer_commands.detach_layer(child, *own.inverse.compose(placement)))
     return combine_commands(_("Detach"), commands)
-
-
-@with_project
-def _delete(
-    session: Session, project: Project, identities: Sequence[int], inherited: Sequence[Command]
-) -> None:
-    order = [layer.id for layer in project.document.layers]
-    removals = [layer_commands.remove_layer(identity) for identity in identities]
-    count = len(identities)
-    label = ngettext("Delete layer", "Delete {count} layers", count).format(count=count)
-    was_active, index = (
-        project.selection.active in identities,
-        order.index(project.selection.active),
-    )
-    editing.edit_document(session, combine_commands(label, [*inherited, *removals]))
-    if was_active:
-        near = [*order[:index][::-1], *order[index + 1 :]]
-        set_active_layer(session, next(each for each in near if each not in identities))

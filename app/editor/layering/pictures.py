@@ -5,7 +5,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import Document, Group, Layer, Meshing, clip_of, group_commands, layer_commands
+from app.document import (
+    Document,
+    Group,
+    Layer,
+    Meshing,
+    clip_of,
+    group_commands,
+    layer_commands,
+)
 from app.editor import pending_changes
 from app.editor.action import Action, do
 from app.editor.actions import dialog_actions, editing
@@ -14,6 +22,7 @@ from app.editor.actions.layer_setup.layer_runtimes import update_layer_runtimes
 from app.editor.actions.project_files import files
 from app.editor.actions.timing import sounds
 from app.editor.error_reports import as_sentence
+from app.editor.layering.deform_groups import replace_member, replacing
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -109,6 +118,9 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
     if identity not in project.runtimes.layers:
         return
     before, canvas = project.document.layer(identity), project.document.canvas
+    if before.deform_group is not None:
+        replace_member(session, project, before, path)
+        return
     scene, shown = project.document.layers, project.runtimes.layers[identity].picture.rgba
 
     def work() -> tuple[KeyResolver, _LoadedLayer]:
@@ -133,11 +145,7 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
             for notice in (*made.notices, *distance_notices(resolver)):
                 session.notices.show(as_sentence(notice))
 
-    kind = JobKind(
-        _("Replacing a picture"),
-        _("The picture of {layer} was not replaced").format(layer=before.name),
-    )
-    pending_changes.begin_pending_change(session, project, kind, work, done)
+    pending_changes.begin_pending_change(session, project, replacing(before), work, done)
 
 
 @with_project

@@ -21,7 +21,9 @@ class Selection(Revised):
     """What is selected; handles are always of the active layer."""
 
     active: int  # id of the active layer
-    other_layers: frozenset[int] = frozenset()  # ids of selected layers besides the active one
+    # Id of the member selected in the list while the deform group that bends it is active.
+    member: int | None = None
+    other_layers: frozenset[int] = frozenset()  # ids of selected layers besides the listed one
     handles: frozenset[int] = frozenset()  # ids
     # Channels without selected keys are left out.
     keys: KeysByChannel = field(default_factory=dict)
@@ -45,16 +47,21 @@ class Selection(Revised):
             return self.keys
         return {channel: frozenset({frame})}
 
-    def activate_layer(self, layer: int) -> None:
+    @property
+    def listed(self) -> int:
+        """Id of the layer that is selected in the list: the active one, or a member of it."""
+        return self.active if self.member is None else self.member
+
+    def activate_layer(self, layer: int, member: int | None = None) -> None:
         """Make a layer active and select it alone; of another layer, nothing else is selected."""
-        self.other_layers = frozenset()
+        self.other_layers, self.member = frozenset(), member
         if layer != self.active:
             self.active, self.channel, self.pivot = layer, None, None
             self.clear()
 
     def select_other_layers(self, layers: frozenset[int]) -> None:
-        """Select other layers besides the active one."""
-        self.other_layers = layers - {self.active}
+        """Select other layers besides the listed one."""
+        self.other_layers = layers - {self.listed}
 
     def select_handles(self, handles: frozenset[int]) -> None:
         """Select these handles, and no keys; the pivot of other handles is forgotten."""
@@ -114,6 +121,8 @@ class Selection(Revised):
         if self.active not in [layer.id for layer in layers]:
             self.active = ([layer for layer in layers if not layer.still] or layers)[-1].id
             self.clear()
+        if self.member not in [each.id for each in document.deform_members(self.active)]:
+            self.member = None
         self.other_layers &= {layer.id for layer in layers}
         self.handles &= {handle.id for handle in document.layer(self.active).handles}
         chosen = {channel: at & frames_in(document, channel) for channel, at in self.keys.items()}

@@ -1,12 +1,13 @@
 """The document after a reload: the same handles, keys and joints on the changed artwork."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from app.document import Command, Document, Layer, PictureFile, layer_commands
 from app.errors import join_names
+from app.solving.deform_group.rebuilding import RebuiltGroup, rebuild_group
 from app.solving.reload.file_groups import document_paths, update_groups
 from app.solving.reload.file_settings import (
     with_file_order,
@@ -41,6 +42,7 @@ class Reloading:
     resolvers: tuple[KeyResolver, ...] = ()
     layers: Mapping[int, Layer] = field(default_factory=dict)  # finished, by id
     new: tuple[tuple[LayerChange, Layer], ...] = ()
+    group_pictures: Mapping[int, Picture] = field(default_factory=dict)  # of deform groups, by id
     notices: tuple[str, ...] = ()
 
     @property
@@ -57,9 +59,18 @@ class Reloading:
     def pictures(self) -> dict[PictureFile, Picture]:
         """The decoded pictures of changed and new layers."""
         by_layer = {change.layer: change.imported for change in self.plan.changes}
-        changed = [(layer.picture, by_layer[identity]) for identity, layer in self.finished.items()]
+        changed = [
+            (layer.picture, by_layer[identity])
+            for identity, layer in self.finished.items()
+            if identity in by_layer
+        ]
         changed += [(layer.picture, change.imported) for change, layer in self.new]
-        return {
+        bent = {
+            layer.picture: self.group_pictures[identity]
+            for identity, layer in self.finished.items()
+            if identity in self.group_pictures
+        }
+        return bent | {
             file: imported.picture
             for file, imported in changed
             if imported is not None and file.data is imported.data
@@ -105,13 +116,46 @@ def start_reload(plan: ReloadPlan) -> Reloading:
         changes,
         (each.imported.picture.size for each in changes if each.imported is not None),
     )
+    bent = _rebuilt_groups(shifted, made)
+    there: list[_Made | RebuiltGroup] = [each for each in made if not each.is_new]
+    there += bent.values()
+    layers = {each.layer.id: each.layer for each in there if each.layer}
     return Reloading(
         plan=shifted,
-        resolvers=tuple(each.resolver for each in made if each.resolver is not None),
-        layers={each.layer.id: each.layer for each in made if each.layer and not each.is_new},
+        resolvers=tuple(each.resolver for each in there if each.resolver is not None),
+        layers=layers,
         new=tuple((each.change, each.layer) for each in made if each.layer and each.is_new),
-        notices=tuple(notice for each in made for notice in each.notices),
+        group_pictures={identity: each.picture for identity, each in bent.items()},
+        notices=(
+            *(notice for each in made for notice in each.notices),
+            *(notice for each in bent.values() for notice in each.notices),
+        ),
     )
+
+
+def _rebuilt_groups(plan: ReloadPlan, made: Sequence["_Made"]) -> dict[int, RebuiltGroup]:
+    """Return the deform groups of changed members, by id."""
+    document, found = plan.document, {}
+    now = {
+        each.change.layer: each.layer or (each.resolver and each.resolver.new_layer)
+        for each in made
+        if each.layer or each.resolver
+    }
+    pictures = dict(plan.pictures)
+    for each in plan.changes:
+        is_redrawn = each.change is not Change.MOVED and each.layer in now
+        if is_redrawn and each.layer is not None and each.imported is not None:
+            pictures[each.layer] = each.imported.picture
+    shifts = {each.layer: each.shift for each in plan.changes}
+    for group in document.layers:
+        members = document.deform_members(group.id)
+        if not any(member.id in now for member in members):
+            continue
+        moved = {shifts.get(member.id, 0j) for member in members}
+        by = moved.pop() if len(moved) == 1 else 0j
+        present = [now.get(member.id) or member for member in members]
+        found[group.id] = rebuild_group(group, present, plan.pictures, pictures, by)
+    return found
 
 
 def step_reload(reloading: Reloading) -> Reloading:
@@ -164,6 +208,8 @@ def _redrawn(before: Layer, change: LayerChange, imported: ImportedLayer, old: P
     notices: tuple[str, ...] = ()
     if before.still:
         made = make_still_picture(imported.data, picture)
+        if before.deform_group is not None:
+            made = replace(made, cut_out=cut_out)
     else:
         was = cut_picture(old, before.cut_out, is_alone=False)
         now = cut_picture(picture, cut_out, is_alone=False)

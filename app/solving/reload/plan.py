@@ -98,6 +98,7 @@ def find_drawing(document: Document, name: str) -> DrawingFile:
                     hidden=layer.hidden,
                 )
                 for layer in document.layers
+                if not document.is_deform_group(layer.id)
             ),
             groups=document.groups,
         )
@@ -114,10 +115,11 @@ def with_origins(document: Document, drawing: DrawingFile) -> Document:
     """Return the document with a drawing that was not noted in it, whose layers are all its."""
     if drawing in document.drawings:
         return document
-    layers = tuple(
-        replace(layer, origin=LayerOrigin(drawing=drawing.id, index=index))
-        for index, layer in enumerate(document.layers)
-    )
+    drawn = [layer for layer in document.layers if not document.is_deform_group(layer.id)]
+    origins = {
+        layer.id: LayerOrigin(drawing=drawing.id, index=index) for index, layer in enumerate(drawn)
+    }
+    layers = tuple(replace(layer, origin=origins.get(layer.id)) for layer in document.layers)
     return replace(document, layers=layers, drawings=(drawing,))
 
 

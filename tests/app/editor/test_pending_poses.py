@@ -19,8 +19,8 @@ from app.editor.actions.posing.pose_drag import (
     release_drag,
     set_targets,
 )
+from app.editor.layering.deletion import delete_layers
 from app.editor.layering.layer_list import duplicate_layer
-from app.editor.layering.parenting import delete_layers
 from app.errors import LissomError
 
 

@@ -26,13 +26,26 @@ from app.errors import LissomError
 from app.export import ExportRequest, FrameRenderer, plan_export
 from app.motion import Evaluator
 from app.render.gpu.context import create_context
-from app.solving import DragSolver, Rig, bend_as_one, part_deform_group
+from app.solving import (
+    DragSolver,
+    Rig,
+    bend_as_one,
+    find_drawing,
+    part_deform_group,
+    plan_reload,
+    replace_member_picture,
+    start_reload,
+    step_reload,
+)
 from app.storage import (
     Picture,
     cut_picture,
+    encode_png,
     load_project,
     make_still_layer,
+    make_still_picture,
     open_layered,
+    read_drawing,
     save_project,
 )
 
@@ -254,3 +267,53 @@ def test_layers_that_cannot_be_members_are_refused(bent):
         bend_as_one(document, ids(document, ["bubble"]), pictures)
     with pytest.raises(LissomError, match="ink"):
         bend_as_one(document, ids(document, ["bubble", "ink"]), pictures)
+
+
+def test_a_reload_of_members_rebuilds_their_group(bent, tmp_path):
+    document, pictures = bent
+    group = by_name(document, "fish")
+    path = tmp_path / "fish.ora"
+    horned = drawn(lambda draw: draw.polygon([*BODY, (80, 10), (60, 30)], fill=(240, 150, 60, 255)))
+    moved = {**STACK, "colour": horned}
+    tags = "".join(
+        f'<layer name="{name}" src="data/{number}.png" x="0" y="0"/>'
+        for number, name in enumerate(moved)
+    )
+    path.write_bytes(openraster(SIZE, tags, [*moved.values()]))
+    drawing = find_drawing(document, path.name)
+    plan = plan_reload(document, drawing, read_drawing(path), pictures)
+    reloading = start_reload(plan)
+    while not reloading.is_over:
+        reloading = step_reload(reloading)
+    after = reloading.command(document)
+    whole = after.layer(group.id)
+    assert whole.covers(np.array([75 + 95j])).all()
+    assert not group.covers(np.array([75 + 95j])).any()
+    assert [handle.position for handle in whole.handles] == [
+        handle.position for handle in group.handles
+    ]
+    assert by_name(after, "colour").deform_group == group.id
+    new = {
+        each.id: reloading.pictures.get(each.picture, pictures[each.id]) for each in after.layers
+    }
+    (frame,) = frames(after, new, 0)
+    assert frame[25, 75].tolist() == [240, 150, 60, 255]
+    # The member's mesh of its own follows once it is alone again.
+    command, notices = part_deform_group(after, group.id, new)
+    assert len(notices) == 1
+    assert by_name(command(after), "colour").covers(np.array([75 + 95j])).all()
+
+
+def test_a_member_with_another_picture_changes_the_shape_of_its_group(bent):
+    document, pictures = bent
+    group, colour = by_name(document, "fish"), by_name(document, "colour")
+    tall = drawn(lambda draw: draw.rectangle((60, 4, 140, 110), fill=(240, 150, 60, 255)))
+    picture = Picture(rgba=np.asarray(tall))
+    file = replace(make_still_picture(encode_png(tall), picture), id=colour.id, name="colour")
+    member = replace(colour, picture=file.picture, domain=file.domain, corner=0j, keys=file.keys)
+    command, known, notices = replace_member_picture(document, member, picture, pictures)
+    after = command(document)
+    assert notices == ()
+    assert set(known) == {member.picture, after.layer(group.id).picture}
+    assert after.layer(group.id).covers(np.array([100 + 112j])).all()
+    assert [key.frame for key in after.layer(group.id).keys] == [0, 10]

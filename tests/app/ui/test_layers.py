@@ -36,6 +36,7 @@ from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.project_files import saving
 from app.editor.actions.project_files.files import ONE_PICTURE
 from app.editor.actions.timing import keys, timeline_drag
+from app.editor.layering.deletion import delete_layers
 from app.editor.layering.layer_list import (
     duplicate_layer,
     layer_at,
@@ -44,7 +45,7 @@ from app.editor.layering.layer_list import (
     toggle_visibility_key,
 )
 from app.editor.layering.layer_selection import set_active_layer
-from app.editor.layering.parenting import attach_layer, delete_layers, detach_layer
+from app.editor.layering.parenting import attach_layer, detach_layer
 from app.editor.layering.pictures import (
     add_layers,
     drop_files,

@@ -75,6 +75,7 @@ from app.editor.actions.project_files import saving
 from app.editor.actions.timing import channel_keys, keys, springs, timeline_drag, tracks
 from app.editor.actions.updates import frame_update
 from app.editor.layering.anchors import toggle_anchor_at_handle
+from app.editor.layering.deletion import delete_layers
 from app.editor.layering.layer_list import (
     duplicate_layer,
     rename_layer,
@@ -86,7 +87,6 @@ from app.editor.layering.layer_list import (
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import (
     attach_layer,
-    delete_layers,
     detach_layer,
     set_inherits_rotation,
 )

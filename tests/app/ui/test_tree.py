@@ -23,6 +23,7 @@ from app.document import (
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import insert_key
+from app.editor.layering.deletion import delete_layers
 from app.editor.layering.layer_list import layer_at, toggle_layers_hidden
 from app.editor.layering.layer_selection import (
     select_layers,
@@ -33,7 +34,6 @@ from app.editor.layering.layer_selection import (
 from app.editor.layering.parenting import (
     PARENT_IS_DESCENDANT,
     attach_layer,
-    delete_layers,
     delete_parent_key,
     reparent_layer,
 )

@@ -71,8 +71,10 @@ def parent_label(document: Document, layer: Layer, frame: float) -> tuple[int, s
     """Return the number of a layer's ancestors at a frame, and a label with its parent.
 
     The label is empty for a layer that never has a parent. An ellipsis stands for other parents at
-    other frames.
+    other frames. A member of a deform group is labelled with its group.
     """
+    if layer.deform_group is not None:
+        return 0, _("bends with {group}").format(group=document.deform_layer(layer).name)
     parents = {joint.parent for joint in layer.attachments if joint.parent is not None}
     ancestors = document.parent_chain(layer.id, frame)[1:]
     if not parents:

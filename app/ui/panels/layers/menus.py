@@ -17,6 +17,12 @@ from app.document import (
 from app.editor import Action, Project, do
 from app.editor.actions import editing
 from app.editor.layering import layer_list
+from app.editor.layering.deform_groups import (
+    bend_layers_as_one,
+    part_group,
+    why_not_bend_as_one,
+)
+from app.editor.layering.deletion import delete_layers
 from app.editor.layering.layer_list import (
     duplicate_layer,
     group_layers,
@@ -27,7 +33,6 @@ from app.editor.layering.layer_list import (
     toggle_reference,
 )
 from app.editor.layering.layer_selection import select_layers, solo_layers
-from app.editor.layering.parenting import delete_layers
 from app.editor.layering.pictures import ask_replacement_picture, make_posable, make_still
 from app.editor.layering.reloading import reload_layers
 from app.editor.layering.seams import close_seam
@@ -59,7 +64,7 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     is_many = len(chosen) > 1 and identity in chosen
     whom = chosen if is_many else (identity,)
     count = len(whom)
-    actions: list[Action] = [] if is_many else _of_one_layer(layer)
+    actions: list[Action] = [] if is_many else _of_one_layer(project, layer)
     imgui.separator()
     text = (
         ngettext("Show", "Show {count} layers", count)
@@ -80,7 +85,8 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     if menu_entry(text.format(count=count), SOLO):
         actions.append(do(solo_layers, *whom))
     if not is_many:
-        actions += _kind(layer)
+        actions += _kind(project, layer)
+    actions += _bending(project, whom)
     imgui.separator()
     others = _("Other layers are selected. Open the menu of one of them.")
     reason = None if is_many or not project.selection.other_layers else others
@@ -108,17 +114,33 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     return actions
 
 
-def _of_one_layer(layer: Layer) -> list[Action]:
+def _of_one_layer(project: Project, layer: Layer) -> list[Action]:
     identity = layer.id
-    entries = (
-        (_("Duplicate"), icons.ICON_FA_CLONE, do(duplicate_layer, identity)),
-        (_("Replace picture…"), icons.ICON_FA_FILE_IMAGE, do(ask_replacement_picture, identity)),
-        (_("Reload layer"), icons.ICON_FA_ARROWS_ROTATE, do(reload_layers, identity)),
-    )
+    entries = [(_("Duplicate"), icons.ICON_FA_CLONE, do(duplicate_layer, identity))]
+    if not project.document.is_deform_group(identity):
+        replacement = do(ask_replacement_picture, identity)
+        entries += [
+            (_("Replace picture…"), icons.ICON_FA_FILE_IMAGE, replacement),
+            (_("Reload layer"), icons.ICON_FA_ARROWS_ROTATE, do(reload_layers, identity)),
+        ]
     actions = [action for title, icon, action in entries if menu_entry(title, icon)]
     if layer.has_parent and menu_entry(_("Close seam"), icons.ICON_FA_GRIP_LINES_VERTICAL):
         actions.append(do(close_seam, identity))
     return actions
+
+
+def _bending(project: Project, whom: Sequence[int]) -> list[Action]:
+    """Draw the entry that makes a deform group of layers, or the one that parts it."""
+    layer = project.document.layer(whom[0])
+    group = project.document.deform_layer(layer).id
+    if len(whom) == 1 and project.document.is_deform_group(group):
+        if menu_entry(_("Part deform group"), icons.ICON_FA_OBJECT_UNGROUP):
+            return [do(part_group, group)]
+        return []
+    reason = why_not_bend_as_one(project, whom)
+    if menu_entry(_("Bend as one"), icons.ICON_FA_OBJECT_GROUP, reason=reason):
+        return [do(bend_layers_as_one, *whom)]
+    return []
 
 
 def _switch_disabled_reason(project: Project, members: Sequence[SwitchMember]) -> str | None:
@@ -129,12 +151,14 @@ def _switch_disabled_reason(project: Project, members: Sequence[SwitchMember]) -
     return _("One of them is in a switch already.") if is_taken else None
 
 
-def _kind(layer: Layer) -> list[Action]:
+def _kind(project: Project, layer: Layer) -> list[Action]:
     actions: list[Action] = []
     if menu_entry(
         _("Include in exports") if layer.reference else _("Reference only"), icons.ICON_FA_BAN
     ):
         actions.append(do(toggle_reference, layer.id))
+    if layer.deform_group is not None or project.document.is_deform_group(layer.id):
+        return actions
     if menu_entry(
         _("Make posable") if layer.still else _("Make still picture"), icons.ICON_FA_IMAGE
     ):
@@ -178,6 +202,7 @@ def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     reason = _switch_disabled_reason(project, members)
     if menu_entry(_("Create switch"), icons.ICON_FA_MASKS_THEATER, reason=reason):
         actions.append(do(create_switch, *members, name=row.name))
+    actions += _bending(project, row.layers)
     if project.document.switch_group_of(group.name) and menu_entry(
         _("Remove from switch"), icons.ICON_FA_XMARK
     ):

@@ -13,7 +13,7 @@ from app.editor.layering.layer_list import (
 )
 from app.editor.layering.layer_selection import toggle_tree_row
 from app.editor.layering.switches import key_switch
-from app.errors import display_name
+from app.errors import display_name, join_names
 from app.render import Thumbnail
 from app.texts import _
 from app.ui.style.drawing import draw_centred_text, show_picture
@@ -42,6 +42,11 @@ def draw_row_tooltip(document: Document, row: TreeRow) -> None:
         return
     imgui.text_unformatted(row.name)
     if row.layer is not None:
+        members = document.deform_members(row.layer.id)
+        if members:
+            text = _("Bends as one: {layers}")
+            names = join_names([each.name for each in reversed(members)])
+            imgui.text_unformatted(display_name(text.format(layers=names)))
         there, drawing = document.file_layer_of(row.layer), document.drawing_of(row.layer)
         if there is not None and there.is_missing and drawing is not None:
             text = _("No longer in {name}").format(name=drawing.name)
@@ -182,7 +187,10 @@ def _signs(project: Project, row: TreeRow) -> list[str]:
     layer = row.layer
     signs = [f"{100 * layer.opacity:.0f}%"] if layer.opacity < 1 else []
     signs += [icons.ICON_FA_LINK] if layer.has_parent else []
-    signs += [icons.ICON_FA_IMAGE] if layer.still else []
+    if layer.deform_group is not None or project.document.is_deform_group(layer.id):
+        signs += [icons.ICON_FA_OBJECT_GROUP]
+    elif layer.still:
+        signs += [icons.ICON_FA_IMAGE]
     signs += [icons.ICON_FA_BAN] if layer.reference else []
     return signs + ([icons.ICON_FA_BINOCULARS] if layer.id in project.layer_list.solo else [])
 

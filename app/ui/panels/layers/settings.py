@@ -23,6 +23,7 @@ from app.document import (
 )
 from app.editor import Action, Project, do
 from app.editor.actions import editing
+from app.editor.layering.deform_groups import part_group
 from app.editor.layering.layer_list import (
     rename_layer,
     toggle_clipping,
@@ -30,6 +31,7 @@ from app.editor.layering.layer_list import (
     toggle_reference,
     toggle_visibility_key,
 )
+from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import (
     attach_layer,
     delete_parent_key,
@@ -40,6 +42,7 @@ from app.editor.layering.parenting import (
 )
 from app.editor.layering.pictures import make_posable, make_still
 from app.editor.layering.switches import key_switch
+from app.errors import display_name, join_names
 from app.texts import _
 from app.ui.panels.key_diamond import diamond_room, draw_key_diamond
 from app.ui.panels.layers.channels import (
@@ -74,16 +77,15 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     )
     if entered or (imgui.is_item_deactivated_after_edit() and name != layer.name):
         actions.append(do(rename_layer, identity, name))
-    actions += draw_value_channels(project.document, look, layer, frame)
-    label(look, _("Blend"))
-    actions += [
-        do(editing.edit_document, layer_commands.set_blend(identity, blend))
-        for blend in _choose_blend(layer.blend, BLEND_SECTIONS)
-    ]
-    changed = imgui.checkbox(_("Clipped"), layer.clipped)[0]
-    draw_tooltip(_("Visible only over the layer below it in its group"))
-    if changed:
-        actions.append(do(toggle_clipping, identity))
+    is_deform_group = project.document.is_deform_group(identity)
+    if is_deform_group:
+        text = _("Bends {layers} as one. Each of them has its own opacity, blend and order.")
+        names = join_names([each.name for each in project.document.deform_members(identity)])
+        small_text(look, display_name(text.format(layers=names)))
+        if text_button(_("Part deform group"), FILL, _("Its layers get their own meshes back")):
+            actions.append(do(part_group, identity))
+    else:
+        actions += _draw_painting(project, look, layer, frame)
     for group in project.document.groups_around(layer.group):
         actions += _group(look, group)
     changed = imgui.checkbox(_("Reference only"), layer.reference)[0]
@@ -91,9 +93,18 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     if changed:
         actions.append(do(toggle_reference, identity))
     actions += _draw_visibility(project.document, look, layer, frame)
+    if layer.deform_group is not None:
+        text = _("{group} bends and moves this layer.")
+        bent = project.document.deform_layer(layer)
+        small_text(look, display_name(text.format(group=bent.name)))
+        if text_button(_("Select {name}").format(name=bent.name), FILL, ""):
+            actions.append(do(set_active_layer, bent.id))
+        return actions + draw_order_channel(project.document, look, layer, frame)
     actions += _draw_parent(project, look, layer, frame)
     actions += draw_transform_channel(project.document, look, layer, frame)
     actions += draw_ik_target(project.document, look, layer, frame)
+    if is_deform_group:
+        return actions
     actions += draw_order_channel(project.document, look, layer, frame)
     if layer.still:
         small_text(look, _("A still picture, shown as it was drawn."))
@@ -102,6 +113,19 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     elif imgui.button(_("Make still picture"), ImVec2(FILL, 0)):
         actions.append(do(make_still, identity))
     return actions
+
+
+def _draw_painting(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
+    """Draw opacity, effects, blend and clipping."""
+    actions = draw_value_channels(project.document, look, layer, frame)
+    label(look, _("Blend"))
+    actions += [
+        do(editing.edit_document, layer_commands.set_blend(layer.id, blend))
+        for blend in _choose_blend(layer.blend, BLEND_SECTIONS)
+    ]
+    changed = imgui.checkbox(_("Clipped"), layer.clipped)[0]
+    draw_tooltip(_("Visible only over the layer below it in its group"))
+    return [*actions, do(toggle_clipping, layer.id)] if changed else actions
 
 
 def _choose_blend(present: BlendMode, sections: Sequence[Mapping[str, str]]) -> list[BlendMode]:
@@ -197,7 +221,8 @@ def _draw_parent(project: Project, look: Look, layer: Layer, frame: int) -> list
     document = project.document
 
     def can_be_parent(other: Layer) -> bool:
-        return not is_same_or_descendant(project, other.id, layer.id)
+        is_member = other.deform_group is not None
+        return not (is_member or is_same_or_descendant(project, other.id, layer.id))
 
     if not layer.attachments and not any(map(can_be_parent, document.layers)):
         return []

@@ -36,9 +36,9 @@ def draw_layers_panel(
         and progress_bar(resolver.progress, resolver.status_text)
     ):
         actions.append(do(resolving.cancel_solving_keys))
-    heading(look, shorten_text(project.layer.name, imgui.get_content_region_avail().x))
+    heading(look, shorten_text(project.listed_layer.name, imgui.get_content_region_avail().x))
     frame = playback.current_frame(session, project)
-    actions += draw_layer_settings(project, look, project.layer, frame)
+    actions += draw_layer_settings(project, look, project.listed_layer, frame)
     return actions + draw_action_text_button(session, cut_out_editing.toggle_cut_brush, FILL)
 
 

@@ -16,6 +16,7 @@ from app.document import (
 )
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback
+from app.editor.layering.deletion import delete_layers
 from app.editor.layering.layer_list import (
     ask_layer_name,
     duplicate_layer,
@@ -29,7 +30,6 @@ from app.editor.layering.layer_selection import (
     set_active_layer,
     toggle_layers_selected,
 )
-from app.editor.layering.parenting import delete_layers
 from app.editor.layering.pictures import (
     ask_pictures_to_add,
     ask_replacement_picture,
@@ -74,7 +74,7 @@ def draw_layer_tree(
     clipper.begin(len(rows), pitch)
     for number, row in enumerate(rows):
         # Scroll to the active layer, and to a layer that is being renamed.
-        if row.layer and row.layer.id in {project.selection.active, project.layer_list.named_layer}:
+        if row.layer and row.layer.id in {project.selection.listed, project.layer_list.named_layer}:
             clipper.include_item_by_index(number)
     while clipper.step():
         for row in rows[clipper.display_start : clipper.display_end]:
@@ -83,7 +83,7 @@ def draw_layer_tree(
     imgui.dummy(ImVec2(0, 0))
     scroll_while_dragged(look, ROW)
     imgui.end_child()
-    if project.layer_list.last_listed_layer != project.selection.active:
+    if project.layer_list.last_listed_layer != project.selection.listed:
         actions.append(do(note_listed_layer))
     return actions
 
@@ -91,11 +91,11 @@ def draw_layer_tree(
 def _bar(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     active, layers, chosen = (
-        project.selection.active,
+        project.selection.listed,
         project.document.layers,
         project.selected_layers,
     )
-    index, last = layers.index(project.layer), len(layers) - 1
+    index, last = layers.index(project.listed_layer), len(layers) - 1
 
     def button(icon: str, name: str, hint: str, action: Action, reason: str | None = None) -> None:
         if icon_button(look, icon, name, hint, reason=reason):
@@ -118,7 +118,10 @@ def _bar(look: Look, project: Project) -> list[Action]:
     duplicate = do(duplicate_layer, active)
     button(icons.ICON_FA_CLONE, "copy layer", _("Duplicate the layer"), duplicate)
     ask = do(ask_replacement_picture, active)
-    button(icons.ICON_FA_FILE_IMAGE, "replace picture", replace, ask)
+    is_group = project.document.is_deform_group(active)
+    members = _("Its picture is made from its members. Replace the picture of one of them.")
+    reason = members if is_group else None
+    button(icons.ICON_FA_FILE_IMAGE, "replace picture", replace, ask, reason)
     button(icons.ICON_FA_ARROW_UP, "raise", _("Bring the layer forward"), forward, highest)
     button(icons.ICON_FA_ARROW_DOWN, "lower", _("Send the layer back"), back, lowest)
     button(icons.ICON_FA_FOLDER_PLUS, "group layers", group.format(count=count), do(group_layers))
@@ -141,10 +144,10 @@ def _row(
         actions.append(_chosen(row))
     after = imgui.get_cursor_screen_pos()
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    is_active = layer is not None and layer.id == project.selection.active
+    is_active = layer is not None and layer.id == project.selection.listed
     if (
         is_active
-        and project.layer_list.last_listed_layer != project.selection.active
+        and project.layer_list.last_listed_layer != project.selection.listed
         and not imgui.is_item_visible()
     ):
         imgui.set_scroll_here_y(0.5)

@@ -1,7 +1,7 @@
 """Deform groups: one mesh around the pictures of several layers."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from PIL import Image
@@ -45,7 +45,7 @@ class BendingAsOne:
     resolver: KeyResolver
     notices: tuple[str, ...]
     heir: Layer | None  # whose handles and keys the group takes over
-    poses: tuple[Layer, ...] = field(default=())  # layers whose keys rest until the group parts
+    resting: tuple[Layer, ...]  # members whose handles and keys rest until the group is parted
 
     @property
     def command(self) -> Command:
@@ -72,7 +72,7 @@ def bend_as_one(
     members = tuple(layer for layer in document.layers if layer.id in chosen)
     _require_members(document, members)
     flat = flatten_members(
-        members, {layer.id: _texture(layer, pictures[layer.id]) for layer in members}
+        members, {layer.id: cut_texture(layer, pictures[layer.id]) for layer in members}
     )
     heir = _find_heir(members)
     picture, data = Picture(rgba=flat.rgba), encode_png(Image.fromarray(flat.rgba))
@@ -101,7 +101,7 @@ def bend_as_one(
         resolver=resolver,
         notices=(*found, *distance_notices(resolver), *(unsolved if resolver.unsolved else ())),
         heir=heir,
-        poses=resting,
+        resting=resting,
     )
 
 
@@ -136,55 +136,7 @@ def flatten_members(members: Sequence[Layer], textures: Mapping[int, Bytes]) -> 
     return PlacedPicture(readonly(np.asarray(flat)), complex(left, bottom))
 
 
-def part_deform_group(
-    document: Document, identity: int, pictures: Mapping[int, Picture]
-) -> tuple[Command, tuple[str, ...]]:
-    """Return the command that parts a deform group, with notices.
-
-    A member whose picture was replaced meanwhile gets a new mesh, without handles.
-    """
-    restored, notices = {}, list[str]()
-    for member in document.deform_members(identity):
-        earlier = deform_group_commands.layer_before_bending(member)
-        before = member.before_bending
-        if before is not None and before.picture is not member.picture:
-            earlier = _redrawn(earlier, member, pictures[member.id])
-            notices.append(
-                _("{layer} has another picture since, so its keys were solved again").format(
-                    layer=member.name
-                )
-            )
-        restored[member.id] = earlier
-    return deform_group_commands.part_deform_group(identity, restored), tuple(notices)
-
-
-def _redrawn(earlier: Layer, member: Layer, picture: Picture) -> Layer:
-    """Return a layer as it was before it became a member, with the member's present picture."""
-    imported = ImportedLayer(name=member.name, data=member.picture.data, picture=picture)
-    made, _notices = make_posable_layer(
-        imported, member.id, earlier.meshing, member.cut_out, is_cut_out=False
-    )
-    if made.still:
-        return replace(make_still_layer(earlier), picture=member.picture)
-    resolver = start_picture_replacement(earlier, made, member.corner)
-    while not resolver.is_over:
-        resolver = step_resolver(resolver, NO_PICTURE)
-    if resolver.new_layer is None:
-        raise ValueError("a replacement has a new layer")
-    return replace(resolver.new_layer, picture=member.picture).with_poses(resolver.poses)
-
-
-def picture_of_group(
-    document: Document, identity: int, pictures: Mapping[int, Picture]
-) -> PlacedPicture:
-    """Return the present picture of a deform group, made from its members' pictures."""
-    members = document.deform_members(identity)
-    return flatten_members(
-        members, {each.id: _texture(each, pictures[each.id]) for each in members}
-    )
-
-
-def _texture(layer: Layer, picture: Picture) -> Bytes:
+def cut_texture(layer: Layer, picture: Picture) -> Bytes:
     return cut_picture(picture, layer.cut_out, is_alone=False).texture
 
 
