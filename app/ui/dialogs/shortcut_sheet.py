@@ -1,8 +1,8 @@
 """The list of all shortcuts, with a search, in which the keys of actions are changed."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from itertools import chain, combinations_with_replacement
+from itertools import chain, combinations_with_replacement, pairwise
 from typing import NamedTuple
 
 from imgui_bundle import ImVec2, imgui
@@ -29,6 +29,7 @@ from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import draw_tooltip, heading
 
 Key = imgui.Key
+COLUMN = 20.0  # em, at least
 HEADING = 2  # rows of a group's heading
 # What these do is not an action's.
 RESERVED = (Key.space, Key.tab, Key.enter, Key.keypad_enter)
@@ -152,17 +153,24 @@ def _draw_rows(sheet: ShortcutSheet, look: Look) -> list[Action]:
     style = imgui.get_style()
     # Tighter than elsewhere, so that all shortcuts are visible at once.
     imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(style.item_spacing.x, 0.2 * look.em))
-    columns = _columns({group: len(rows[group]) for group in rows})
+    room = 0.9 * imgui.get_main_viewport().size.x - 4 * look.em
+    for count in (3, 2, 1):
+        columns = _columns({group: len(rows[group]) for group in rows}, count)
+        texts = [[row for group in column for row in rows[group]] for column in columns]
+        # Where the keys begin in each column.
+        keys_at = [_widest(row.text for row in own) + 1.6 * look.em for own in texts]
+        keys = [_widest(row.keys for row in own) for own in texts]
+        widths = [max(sum(both), COLUMN * look.em) for both in zip(keys_at, keys, strict=True)]
+        if sum(widths) + (count - 1) * look.em <= room:
+            break
     if imgui.begin_table("sheet", len(columns), imgui.TableFlags_.sizing_fixed_fit):
-        for column in columns:
+        for column, start, width in zip(columns, keys_at, widths, strict=True):
             imgui.table_next_column()
-            names = [row.text for group in column for row in rows[group]]
-            widest = max((imgui.calc_text_size(name).x for name in names), default=0.0)
             for group in column:
                 heading(look, _(group))
                 for row in rows[group]:
-                    actions += _draw_row(sheet, look, row, widest + 1.6 * look.em)
-            imgui.dummy(ImVec2(20 * look.em, 0))
+                    actions += _draw_row(sheet, look, row, start)
+            imgui.dummy(ImVec2(width, 0))
         imgui.end_table()
     imgui.pop_style_var()
     return actions
@@ -190,11 +198,17 @@ def _draw_row(sheet: ShortcutSheet, look: Look, row: _Row, keys_at: float) -> li
     return [do(edit_shortcut_sheet, replace(sheet, changed=spec.label, taken=0))]
 
 
-def _columns(sizes: Mapping[str, int]) -> tuple[list[str], ...]:
-    """Split groups into three columns of nearly equal height, in order. `sizes` are in rows."""
+def _widest(texts: Iterable[str]) -> float:
+    return max((imgui.calc_text_size(text).x for text in texts), default=0.0)
+
+
+def _columns(sizes: Mapping[str, int], count: int) -> list[list[str]]:
+    """Split groups into columns of nearly equal height, in order. `sizes` are in rows."""
     names = list(sizes)
-    cuts = combinations_with_replacement(range(len(names) + 1), 2)
-    parted = [(names[:i], names[i:j], names[j:]) for i, j in cuts]
+    cuts = combinations_with_replacement(range(len(names) + 1), count - 1)
+    parted = [
+        [names[begin:end] for begin, end in pairwise((0, *inner, len(names)))] for inner in cuts
+    ]
     return min(
         parted,
         key=lambda columns: max(
