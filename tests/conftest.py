@@ -6,8 +6,8 @@ import hypothesis
 import pytest
 from hypothesis.internal.conjecture import providers
 
-# Texts are English on any system, also in the processes that tests start.
-os.environ["LISSOM_LANGUAGE"] = "en"
+# Texts are English on any system, also in the processes that tests start, unless they choose.
+os.environ.setdefault("LISSOM_LANGUAGE", "en")
 
 from app.cli.process import use_one_thread
 

@@ -65,7 +65,8 @@ def draw_material(session: Session, look: Look, project: Project) -> list[Action
 
 def _tools(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
-    palette, widths = look.palette, split_line(len(TOOLS))
+    widest = max(imgui.calc_text_size(name).x for _tool, name, _hint in TOOLS)
+    palette, widths = look.palette, split_line(len(TOOLS), widest=widest + 0.4 * look.em)
     for (tool, name, hint), width in zip(TOOLS, widths, strict=True):
         is_chosen = session.tools.mode == tool
         imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)
