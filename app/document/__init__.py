@@ -31,6 +31,7 @@ from app.document.channels.kinds import (
     CAMERA as CAMERA,
     DEPTH as DEPTH,
     DRAW_ORDER as DRAW_ORDER,
+    FOOTAGE_TIME as FOOTAGE_TIME,
     IK_TARGET as IK_TARGET,
     LAYER_KINDS as LAYER_KINDS,
     MARKER as MARKER,
@@ -63,9 +64,11 @@ from app.document.channels.springs import SPRING_PRESETS as SPRING_PRESETS, Spri
 from app.document.channels.tangent_mode import TangentMode as TangentMode
 from app.document.channels.tracks import Track as Track, TrackKey as TrackKey
 from app.document.channels.values import (
+    MAX_FOOTAGE_SPEED as MAX_FOOTAGE_SPEED,
     MAX_SCALE as MAX_SCALE,
     Camera as Camera,
     DrawOrder as DrawOrder,
+    FootageTime as FootageTime,
     IkTarget as IkTarget,
     Transform as Transform,
 )
@@ -92,6 +95,7 @@ from app.document.commands.keys import (
 )
 from app.document.commands.layers import (
     deform_group_commands as deform_group_commands,
+    footage_commands as footage_commands,
     group_commands as group_commands,
     joint_commands as joint_commands,
     layer_commands as layer_commands,
@@ -129,6 +133,7 @@ from app.document.layers.drawing_files import (
     FileLayer as FileLayer,
     LayerOrigin as LayerOrigin,
 )
+from app.document.layers.footage import MOST_PICTURES as MOST_PICTURES, Footage as Footage
 from app.document.layers.groups import (
     BLEND_SECTIONS as BLEND_SECTIONS,
     BLENDS as BLENDS,
@@ -171,6 +176,10 @@ from app.document.queries.channel_values.channel_keys import (
     track_display_frame as track_display_frame,
     track_in as track_in,
     track_source_frame as track_source_frame,
+)
+from app.document.queries.channel_values.footage_at import (
+    footage_picture_at as footage_picture_at,
+    footage_time_at as footage_time_at,
 )
 from app.document.queries.channel_values.repeats import (
     held_key_at as held_key_at,

@@ -14,7 +14,7 @@ from app.cut_out import CutOut
 from app.document.channels.cycles import Cycle, require_no_overlap, require_repeatable_cycle
 from app.document.channels.key import Key
 from app.document.channels.kind import ChannelKeys, ChannelKind, require_order
-from app.document.channels.kinds import DRAW_ORDER, LAYER_KINDS, PARENT, POSE
+from app.document.channels.kinds import DRAW_ORDER, FOOTAGE_TIME, LAYER_KINDS, PARENT, POSE
 from app.document.channels.sliders import Slider
 from app.document.channels.springs import Spring
 from app.document.channels.tracks import Track
@@ -30,6 +30,7 @@ from app.document.checks import (
 from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, Target
 from app.document.layers.attachments import Attachment
 from app.document.layers.drawing_files import LayerOrigin
+from app.document.layers.footage import Footage
 from app.document.layers.groups import BLENDS, BlendMode
 from app.document.rig.applied_motion import AppliedMotion, UnreadMotion, require_motions
 from app.document.rig.chains import Bone, require_chains
@@ -120,6 +121,9 @@ class Layer:
     # Whether the picture is never deformed, such as a background. The domain is then the whole
     # picture, whatever the cut-out.
     still: bool = False
+    # Pictures that the layer shows in time, in place of its picture; the picture is the first of
+    # them. Such a layer is still.
+    footage: Footage | None = None
     reference: bool = False  # a guide in the window; exports omit it
     locked: bool = False  # whether clicks on the drawing pass through
     hidden: bool = False  # at all frames
@@ -212,6 +216,11 @@ class Layer:
             name=self.name,
         )
         self._check_membership()
+        require(
+            self.footage is None or (self.still and self.footage.size == self.picture.size),
+            N_("{name!r} shows footage, so it must be still and have the footage's size."),
+            name=self.name,
+        )
         mask = self.cut_out.mask
         require(
             mask is None or mask.size == self.picture.size,
@@ -245,6 +254,10 @@ class Layer:
         if given == self.keys_of(kind, part):
             return self
         return replace(self, channels={**self.channels, (kind.name, part): given})
+
+    def without_footage(self) -> "Layer":
+        """Return the layer as a still picture, without the keys of its footage's time."""
+        return replace(self.with_keys_of(FOOTAGE_TIME, ()), footage=None)
 
     @property
     def key_frames(self) -> frozenset[int]:

@@ -23,6 +23,7 @@ from app.document import (
     camera_at,
     channels_of,
     clip_of,
+    footage_picture_at,
     keys_in,
     pose_channel,
     track_in,
@@ -49,6 +50,8 @@ from app.motion import (
 )
 from app.render import View
 from app.solving import KeyResolver
+from app.storage import FootageCache
+from engine.arrays import Bytes
 from engine.geometry import Similarity
 
 # Most bytes of intermediate values that inactive layers keep, once they have series.
@@ -66,6 +69,7 @@ class Project(Revised):
     viewport: ViewportState = field(default_factory=ViewportState)
     exports: ExportDestinations = field(default_factory=ExportDestinations)
     runtimes: LayerRuntimes
+    footage: FootageCache = field(default_factory=FootageCache)
     pending: PendingWork = field(default_factory=PendingWork)
     measured: Measurements = field(default_factory=Measurements)
     layer_setup: LayerSetup = field(default_factory=LayerSetup)
@@ -267,6 +271,14 @@ class Project(Revised):
                     layer if isinstance(method, Baseline) else replace(layer, variant=method)
                 )
             runtime.comparison = comparison
+
+    def footage_picture(self, layer: Layer) -> Bytes | None:
+        """Return the picture of a layer's footage at the shown frame; None without one yet."""
+        shown = self.runtimes.layers[layer.id].shown
+        if layer.footage is None or shown is None:
+            return None
+        number = footage_picture_at(self.document, layer, shown.frame)
+        return None if number is None else self.footage.show(layer.id, layer.footage, number)
 
     def view_on(self, screen: tuple[int, int]) -> View:
         """Return the viewport's view on a screen of this size in pixels."""

@@ -29,7 +29,7 @@ from app.render.gpu.context import Context, GlError, is_software, largest_size
 from app.render.gpu.mesh import GpuMesh
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.target import RenderTarget
-from app.storage import Cancellation
+from app.storage import Cancellation, FootagePictures
 from app.texts import _, message_of
 from engine.arrays import Bytes
 from engine.domain import find_closed_cuts
@@ -51,6 +51,7 @@ class PosedFrame(NamedTuple):
     scene: SceneFrame
     vertices: Mapping[int, VertexArray]  # by layer id, in the plane
     camera: Similarity  # moves the camera's view onto the canvas
+    footage: Mapping[int, Bytes]  # pictures of footage, by layer id
 
 
 class FrameRenderer:
@@ -98,7 +99,9 @@ class FrameRenderer:
         self._reach = bounding_box(np.concatenate([mesh.vertices for mesh in meshes]))
         # The mesh has a margin around the drawing, which may lie off the canvas from the start.
         self._room = find_shown_box(plan.view).joined(self._reach)
+        self._footage = FootagePictures(document)
         with ExitStack() as owned:
+            owned.callback(self._footage.close)
             self._renderer = Renderer(context)
             owned.callback(self._renderer.release)
             programs = self._renderer.programs
@@ -114,13 +117,13 @@ class FrameRenderer:
                 pass
             self._drawn: dict[int, DrawnMesh | MemberMesh] = {}
             leaders: dict[int, DrawnMesh] = {}  # by the layer that bends them
-            textures: dict[int, GpuPicture] = {}  # by picture; layers may share one
+            textures: dict[object, GpuPicture] = {}  # layers without footage may share one
             for layer, mesh in zip(layers, meshes, strict=True):
                 rest = mesh.vertices - layer.corner
-                texture = textures.get(id(pictures[layer.id]))
+                shown = layer.footage and layer, id(pictures[layer.id])
+                texture = textures.get(shown)
                 if texture is None:
-                    texture = GpuPicture(context, pictures[layer.id])
-                    textures[id(pictures[layer.id])] = texture
+                    texture = textures[shown] = GpuPicture(context, pictures[layer.id])
                     owned.callback(texture.release)
                 by = bent[layer.id]
                 seam = find_closed_cuts(by.domain)
@@ -151,6 +154,7 @@ class FrameRenderer:
                 for each in scene.layers.values()
             }
             places = {layer: each.scene_positions for layer, each in shown.items()}
+            footage = self._footage.read_frame(scene.layers.keys(), frame)
         except EXPECTED_ERRORS as error:
             raise _failure(frame, message_of(error)) from error
         posed = {}
@@ -167,12 +171,9 @@ class FrameRenderer:
             layer: posed[self._document.deform_layer(each.clip.layer).id]
             for layer, each in scene.layers.items()
         }
-        camera = scene.camera
-        return PosedFrame(
-            scene,
-            vertices,
-            IDENTITY_MOTION if camera is None else camera.canvas_motion(self._document.canvas),
-        )
+        camera, canvas = scene.camera, self._document.canvas
+        motion = IDENTITY_MOTION if camera is None else camera.canvas_motion(canvas)
+        return PosedFrame(scene, vertices, motion, footage)
 
     def _evaluate(self, frame: float) -> SceneFrame:
         """Return a frame with the exported layers that are visible."""
@@ -198,6 +199,8 @@ class FrameRenderer:
         Raises `LissomError` if the frame cannot be drawn.
         """
         try:
+            for layer, picture in posed.footage.items():
+                self._drawn[layer].picture.write(picture)
             seen = {
                 layer: self._drawn[layer].pose(vertices, placement=posed.camera)
                 for layer, vertices in posed.vertices.items()

@@ -13,6 +13,7 @@ from app.document import (
     channels_of,
     describe_channel,
 )
+from app.errors import join_names
 from app.export.morph_mesh import (
     DEFAULT_TOLERANCE,
     MOST_TARGETS,
@@ -137,6 +138,13 @@ class MeshExport:
                 _("the {format} does not animate {channels}").format(
                     format=format_.label, channels=", ".join(constant)
                 )
+            )
+        moving = [each.name for each in layers if each.footage is not None]
+        if moving:
+            found.append(
+                _(
+                    "the {format} does not contain footage; {names} stay as their first pictures"
+                ).format(format=format_.label, names=join_names(moving))
             )
         return (*found, *(() if format_.composites else self._uncomposited(format_.label)))
 

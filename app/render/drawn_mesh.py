@@ -5,6 +5,7 @@ import moderngl
 from app.motion import StreamedVertices, Vertices
 from app.render.gpu.context import is_software
 from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, to_float32_points
+from app.render.gpu.picture import GpuPicture
 from app.render.gpu.series_buffer import SeriesBuffer
 from engine.geometry import IDENTITY_MOTION, Similarity
 from engine.streaming import MOST_ROWS, Series
@@ -25,6 +26,10 @@ class DrawnMesh:
         self._series: SeriesBuffer | None = None
         self._series_pose: PosedMesh | None = None
         self._current: tuple[Vertices, PosedMesh] | None = None
+
+    @property
+    def picture(self) -> GpuPicture:
+        return self._mesh.picture
 
     def pose(self, vertices: Vertices, *, placement: Similarity = IDENTITY_MOTION) -> PosedMesh:
         """Return the mesh posed and painted by these vertices; new vertices are uploaded."""
@@ -70,6 +75,10 @@ class MemberMesh:
         self._mesh = mesh
         self._leader = leader
         self._poses: dict[PosedMesh, PosedMesh] = {}
+
+    @property
+    def picture(self) -> GpuPicture:
+        return self._mesh.picture
 
     def pose(self, vertices: Vertices, *, placement: Similarity = IDENTITY_MOTION) -> PosedMesh:
         """Return the mesh posed by these vertices."""

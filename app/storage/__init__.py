@@ -52,6 +52,21 @@ from app.storage.files.outputs import (
 )
 from app.storage.files.reading import file_time as file_time, read_file as read_file
 from app.storage.files.strict_json import NOT_FINITE as NOT_FINITE, strict_json as strict_json
+from app.storage.footage.footage_cache import (
+    FootageCache as FootageCache,
+    FootageDecoder as FootageDecoder,
+    PackedPictures as PackedPictures,
+)
+from app.storage.footage.footage_pictures import FootagePictures as FootagePictures
+from app.storage.footage.footage_reader import FootageReader as FootageReader
+from app.storage.footage.opening import (
+    VIDEOS as VIDEOS,
+    OpenedFootage as OpenedFootage,
+    inspect_footage as inspect_footage,
+    is_footage as is_footage,
+    is_video as is_video,
+    open_footage as open_footage,
+)
 from app.storage.json_values import (
     JsonObject as JsonObject,
     as_flag as as_flag,
@@ -120,6 +135,11 @@ from app.storage.scenes.drawings import (
     read_layered as read_layered,
 )
 from app.storage.scenes.flattening import flatten_layers as flatten_layers
+from app.storage.scenes.footage_layers import (
+    make_footage_layer as make_footage_layer,
+    open_footage_scene as open_footage_scene,
+    open_video as open_video,
+)
 from app.storage.scenes.layers import (
     make_posable_layer as make_posable_layer,
     make_still_layer as make_still_layer,

@@ -3,7 +3,8 @@
 A project is a zip file: `mimetype` (first, not packed), `project.json`, `thumbnail.png`, and a
 folder for each layer under `layers/`, named by its id. This folder holds the picture, the arrays of
 the domain, and the maps of the poses. The maps are stored, so that another solver never changes an
-animation. Bytes of sounds are under `sounds/`. Unknown fields and members are kept and written
+animation. Bytes of sounds are under `sounds/`. Footage stays in files of its own, which are named
+relative to the project's folder. Unknown fields and members are kept and written
 again.
 
 A project file is untrusted input. Unpacked sizes are limited before anything is unpacked. Pictures
@@ -28,6 +29,7 @@ from app.storage.files.reading import DAMAGED_ZIP, open_file, open_zip, tail_dig
 from app.storage.json_values import JsonObject, as_object, as_text, as_whole, check_repeated_fields
 from app.storage.project.archive import MEBIBYTE, Archive, write_archive
 from app.storage.project.document_json import SCHEMA, read_document, write_document
+from app.storage.project.footage import footage_found_from, footage_relative_to
 from app.storage.project.members import layer_members
 from app.storage.project.sounds import sound_members
 from app.texts import N_, _, message_of
@@ -65,7 +67,7 @@ def save_project(
     str
         The file's `project_digest`, until another process writes there.
     """
-    content = write_document(document)
+    content = write_document(footage_relative_to(document, path.parent))
     members = {
         PROJECT_JSON: json.dumps(content, indent=1, sort_keys=True, allow_nan=False).encode(),
     }
@@ -108,7 +110,7 @@ def load_project(path: Path) -> Document:
     """
     try:
         with open_file(path) as (file, size), open_zip(file) as members:
-            document = _read(Archive(members, size))
+            document = footage_found_from(_read(Archive(members, size)), path.parent)
     except OSError as error:
         raise LissomError(
             _("cannot read {path}: {reason}").format(path=path, reason=error.strerror or error)

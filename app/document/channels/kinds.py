@@ -13,6 +13,7 @@ from app.document.channels.values import (
     MAX_ZOOM,
     Camera,
     DrawOrder,
+    FootageTime,
     IkTarget,
     Transform,
 )
@@ -182,6 +183,18 @@ TINT: Final = ChannelKind[tuple[float, float, float]](
     tangent_mode=TangentMode.CORNER,
     uniform="layer_tint",
 )
+FOOTAGE_TIME: Final = ChannelKind[FootageTime](
+    name="footage_time",
+    label=N_("Footage time"),
+    icon="FILM",
+    fields=(
+        ValueField("start", Quantity.NUMBER, default=0.0),
+        ValueField("speed", Quantity.NUMBER, default=1.0),
+        ValueField("loops", Quantity.FLAG, default=False),
+    ),
+    make=FootageTime,
+    holds_before=True,
+)
 DEPTH: Final = ChannelKind[float](
     name="depth",
     label=N_("Depth"),
@@ -217,6 +230,9 @@ VOLUME: Final = ChannelKind[float](
 LAYER_KINDS: Final[Mapping[str, ChannelKind[Any]]] = MappingProxyType(
     {
         each.name: each
-        for each in (TRANSFORM, IK_TARGET, OPACITY, TINT, DRAW_ORDER, VISIBILITY, DEPTH, SLIDER)
+        for each in (
+            *(TRANSFORM, IK_TARGET, OPACITY, TINT, DRAW_ORDER, VISIBILITY, FOOTAGE_TIME),
+            *(DEPTH, SLIDER),
+        )
     }
 )

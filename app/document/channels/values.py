@@ -13,6 +13,8 @@ from engine.arrays import Complexes
 from engine.geometry import Similarity
 
 MAX_ZOOM: Final = 1000.0  # largest zoom; its inverse is the smallest
+MAX_FOOTAGE_SPEED: Final = 100.0  # times its own speed
+MAX_FOOTAGE_FRAME: Final = 10_000_000
 MAX_SCALE: Final = 100.0  # of a layer; its inverse is the smallest
 
 
@@ -94,6 +96,29 @@ class IkTarget:
             0 <= self.mix <= 1,
             N_("The mix of an IK target must be from 0 to 1, not {mix:g}."),
             mix=self.mix,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class FootageTime:
+    """How footage plays from a key on: speed 0 holds a frame, and −1 plays backwards."""
+
+    start: float = 0.0  # frame of the footage at the key
+    speed: float = 1.0  # 1 is the footage's own
+    loops: bool = False  # whether it begins again at its end; otherwise its last frame holds
+
+    def __post_init__(self) -> None:
+        require(
+            abs(self.start) <= MAX_FOOTAGE_FRAME,
+            N_("Footage can start at most at its frame {largest:,}, not at {start:g}."),
+            largest=MAX_FOOTAGE_FRAME,
+            start=self.start,
+        )
+        require(
+            abs(self.speed) <= MAX_FOOTAGE_SPEED,
+            N_("The speed of footage must be from −{largest:g} to {largest:g}, not {speed:g}."),
+            largest=MAX_FOOTAGE_SPEED,
+            speed=self.speed,
         )
 
 

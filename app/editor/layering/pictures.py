@@ -23,6 +23,7 @@ from app.editor.actions.project_files import files
 from app.editor.actions.timing import sounds
 from app.editor.error_reports import as_sentence
 from app.editor.layering.deform_groups import replace_member, replacing
+from app.editor.layering.footage import add_footage
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -42,7 +43,9 @@ from app.storage import (
     LayeredPicture,
     Picture,
     decode_picture,
+    is_footage,
     is_layered,
+    is_video,
     make_posable_layer,
     make_still_layer,
     make_still_picture,
@@ -243,9 +246,13 @@ def drop_files(session: Session, paths: Sequence[Path]) -> None:
         paths = [path for path in paths if path not in sound_files]
         if not paths:
             return
+    project = session.project
+    if project is not None and paths and all(map(is_video, paths)):
+        for path in paths:
+            add_footage(session, path)
+        return
     kinds = (*files.PICTURES, *LAYERED)
     pictures = [path for path in paths if path.suffix.lower() in kinds and not path.is_dir()]
-    project = session.project
     if project is None or not pictures or len(pictures) < len(paths):
         files.open_dropped_files(session, paths)
         return
@@ -253,6 +260,7 @@ def drop_files(session: Session, paths: Sequence[Path]) -> None:
     is_one = not others and not is_layered(first)
     answers: list[tuple[str, Action]] = [
         (_("New layer") if is_one else _("New layers"), do(add_layers, pictures)),
+        *([(_("Footage"), do(add_footage, first))] if is_footage(pictures) else []),
         (_("New scene"), do(files.open_dropped_files, pictures)),
     ]
     text = _("New layers lie in front of the others and share their timeline.")

@@ -39,6 +39,9 @@ def _close_seam(session: Session, project: Project, identity: int) -> None:
         return
     pair = {identity, joint.parent}
     behind, front = (layer for layer in document.layers if layer.id in pair)
+    if behind.footage is not None:
+        text = _("{behind} shows footage, so its picture cannot be extended under {front}.")
+        raise LissomError(text.format(behind=behind.name, front=front.name))
     placed = [
         PlacedPicture(project.runtimes.layers[each.id].picture.rgba, each.corner)
         for each in (behind, front)

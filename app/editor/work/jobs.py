@@ -1,7 +1,8 @@
-"""Worker threads for long computations, in four lanes of one thread each.
+"""Worker threads for long computations, in five lanes of one thread each.
 
 "hand" is for awaited results such as a dragged pose, "export" for exports, "display" for slower
-results such as in-betweens, "keep" for writing to disk. A job that never ends can be abandoned.
+results such as in-betweens, "footage" for reading footage, "keep" for writing to disk. A job that
+never ends can be abandoned.
 """
 
 import atexit
@@ -16,7 +17,7 @@ from typing import Any, Literal, get_args
 
 from app.errors import CANCELLED, LissomError, listen_to_progress
 
-LaneName = Literal["hand", "export", "display", "keep"]
+LaneName = Literal["hand", "export", "display", "footage", "keep"]
 PATIENCE = 10.0  # seconds that the end of the program waits for running jobs
 MOMENT = 0.5  # seconds that it waits for abandoned jobs
 

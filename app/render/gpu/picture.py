@@ -51,8 +51,9 @@ class GpuPicture:
                 ).format(width=width, height=height, limit=limit)
             )
         self.size = (width, height)
+        self._context = context
         self._products = _BYTES if is_for_screen else _PRODUCTS
-        self._texture = context.texture(self.size, 4, dtype="f1" if is_for_screen else "f2")
+        self._texture = self._new_texture(self.size)
         self._written: Bytes | None = None
         self.write(straight)
         self._sampler = context.sampler(
@@ -61,10 +62,16 @@ class GpuPicture:
         )
 
     def write(self, straight: Bytes) -> None:
-        """Upload another picture of the same size; unchanged rows are skipped."""
+        """Upload another picture; unchanged rows are skipped.
+
+        A picture with more or fewer pixels is stretched to the same size.
+        """
         if straight is self._written:
             return
         height, width = straight.shape[:2]
+        if (width, height) != self._texture.size:
+            self._texture.release()
+            self._texture, self._written = self._new_texture((width, height)), None
         changed = np.ones(height, dtype=np.bool_)
         if self._written is not None:
             changed = (straight != self._written).any(axis=(1, 2))
@@ -78,6 +85,10 @@ class GpuPicture:
             bottom = height - top - len(block)
             self._texture.write(block.tobytes(), viewport=(0, int(bottom), width, len(block)))
         self._texture.build_mipmaps()
+
+    def _new_texture(self, size: tuple[int, int]) -> moderngl.Texture:
+        dtype = "f1" if self._products is _BYTES else "f2"
+        return self._context.texture(size, 4, dtype=dtype)
 
     @contextmanager
     def bound(self, unit: int) -> Iterator[None]:

@@ -31,7 +31,7 @@ def start_picture_replacement(
     domain = made.domain.moved(corner)
     places = _places(moved, domain)
     handles = tuple(replace(handle, position=places[handle.position]) for handle in moved.handles)
-    into = moved.with_poses(
+    into = moved.without_footage().with_poses(
         (_at_rest(moved, pose, domain, places) for pose in moved.poses),
         picture=made.picture,
         corner=corner,

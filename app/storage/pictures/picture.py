@@ -143,7 +143,7 @@ def stored_size(data: bytes, name: str) -> tuple[int, int]:
     """Return the width and height in pixels from a picture file's header, without decoding it."""
     if not data:
         raise LissomError(_("{name} is empty").format(name=name))
-    with _only_size_warnings(), _naming_errors(data, name), _opened(_usable(data)[0]) as image:
+    with _only_size_warnings(), decoding_errors(data, name), open_image(_usable(data)[0]) as image:
         return image.size
 
 
@@ -162,7 +162,7 @@ def _only_size_warnings() -> Iterator[None]:
 
 
 @contextmanager
-def _naming_errors(data: bytes, name: str) -> Iterator[None]:
+def decoding_errors(data: bytes, name: str) -> Iterator[None]:
     """Turn Pillow's exceptions into a `LissomError` that names the file."""
     try:
         yield
@@ -195,12 +195,13 @@ def _usable(data: bytes) -> tuple[bytes, tuple[str, ...]]:
     return without_damaged_chunks(data) if data.startswith(PNG) else (data, ())
 
 
-def _opened(data: bytes) -> ImageFile.ImageFile:
+def open_image(data: bytes) -> ImageFile.ImageFile:
+    """Open the bytes of a picture file with Pillow, without decoding its pixels."""
     return Image.open(io.BytesIO(data), formats=tuple(FORMATS))
 
 
 def _decode(data: bytes, name: str) -> Picture:
-    with _naming_errors(data, name):
+    with decoding_errors(data, name):
         usable, notices = _usable(data)
         picture = _decoded(usable)
         suffix = ".ico" if data.startswith(ICO) else picture.suffix
@@ -209,7 +210,7 @@ def _decode(data: bytes, name: str) -> Picture:
 
 def _decoded(data: bytes) -> Picture:
     notices = []
-    file = _opened(data)
+    file = open_image(data)
     suffix = FORMATS[file.format or ""]
     frames = getattr(file, "n_frames", 1)
     if frames > 1:

@@ -74,6 +74,7 @@ from app.storage.project.codecs import (
     verbatim,
 )
 from app.storage.project.earlier_schemas import update_schema
+from app.storage.project.footage import FOOTAGE
 from app.storage.project.members import LayerMembers, earlier_folder, layer_folder
 from app.storage.project.sounds import SOUND, with_sound_files
 from app.texts import N_, _, message_of
@@ -434,6 +435,7 @@ LAYER_FIELDS = (
     Field("name", TEXT, default="layer"),
     Field("corner", POINT, default=0j),
     Field("still", FLAG, default=False),
+    Field("footage", optional(FOOTAGE), default=None),
     Field("reference", FLAG, default=False),
     Field("locked", FLAG, default=False),
     Field("hidden", FLAG, default=False),

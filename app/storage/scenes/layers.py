@@ -111,6 +111,7 @@ def place_as_layer(layer: Layer, replaced: Layer) -> Layer:
 
     The channels of the other layer's handles are left out.
     """
+    replaced = replaced.without_footage()
     anchor = replaced.anchor
     if anchor is not None:
         anchor = complex(layer.domain.nearest(np.array([anchor]))[0])

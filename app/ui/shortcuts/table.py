@@ -13,7 +13,7 @@ from app.editor.actions.posing.motion_presets import (
 from app.editor.actions.project_files import export_settings, exporting, files, recovery, saving
 from app.editor.actions.timing import channel_keys, cycles, keys, sounds, timeline_drag, tracks
 from app.editor.actions.tracking import recording
-from app.editor.layering import layer_list, layer_posing, reloading
+from app.editor.layering import footage, layer_list, layer_posing, reloading
 from app.editor.poses import copying, library, pasting, pasting_targets
 from app.editor.tools import move_tool
 from app.texts import N_
@@ -98,7 +98,8 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
         (keys.use_next_tangent_mode, *keys.EASE_KEYS),
         (cycles.create_cycle, cycles.bake_cycle, cycles.end_cycle),
         (keys.add_marker_at_playhead, channel_keys.key_camera, timeline_drag.fit_timeline),
-        (preset_setup.begin_motion_setup, rigging.rig_layer, sounds.ask_sound_to_add),
+        (preset_setup.begin_motion_setup, rigging.rig_layer),
+        (sounds.ask_sound_to_add, footage.ask_footage_to_add, footage.ask_reference_to_add),
         (joint_placement.mirror_joints, joint_placement.reset_joints),
         (apply_motion.cancel_motion_job,),
     ),

@@ -7,12 +7,14 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.document import (
     DRAW_ORDER,
+    FOOTAGE_TIME,
     VISIBILITY,
     Attachment,
     BaseKey,
     Channel,
     Document,
     DrawOrder,
+    FootageTime,
     Key,
     Marker,
     Quantity,
@@ -39,16 +41,20 @@ def format_value(document: Document, channel: Channel[Any], key: BaseKey) -> str
         return NOTHING if parent is None else parent.name
     if not isinstance(key, Key):
         return ""
-    if channel.kind is DRAW_ORDER:
-        return format_draw_order(document, key.value)
-    if channel.kind is VISIBILITY:
-        return _("visible") if key.value else _("hidden")
-    kind = channel.kind
-    parts = (
-        _format_field(document, each.quantity, kind.field_of(key.value, each.name))
-        for each in kind.fields
-    )
-    return ", ".join(parts)
+    match channel.kind:
+        case kind if kind is DRAW_ORDER:
+            text = format_draw_order(document, key.value)
+        case kind if kind is VISIBILITY:
+            text = _("visible") if key.value else _("hidden")
+        case kind if kind is FOOTAGE_TIME:
+            text = format_footage_time(key.value)
+        case kind:
+            parts = (
+                _format_field(document, each.quantity, kind.field_of(key.value, each.name))
+                for each in kind.fields
+            )
+            text = ", ".join(parts)
+    return text
 
 
 def format_draw_order(document: Document, order: DrawOrder) -> str:
@@ -57,6 +63,15 @@ def format_draw_order(document: Document, order: DrawOrder) -> str:
         return _("as in the list")
     text = _("in front of {name}") if order.in_front else _("behind {name}")
     return text.format(name=beside.name)
+
+
+def format_footage_time(time: FootageTime) -> str:
+    """Return in words how footage plays from a key on."""
+    if not time.speed:
+        return _("holds frame {start:.4g}").format(start=time.start)
+    text = _("from {start:.4g}, loops") if time.loops else _("from {start:.4g}")
+    speed = "" if time.speed == 1 else f", × {time.speed:.3g}"
+    return text.format(start=time.start) + speed
 
 
 def _format_field(document: Document, quantity: Quantity, value: Any) -> str:

@@ -19,6 +19,8 @@ NAMES = {
     "turn": N_("Turn"),
     "opacity": N_("Opacity"),
     "depth": N_("Depth"),
+    "start": N_("Starts at"),
+    "speed": N_("Speed"),
 }
 # Unit of the number that a person types, relative to the stored number, and its form.
 UNITS = {

@@ -135,6 +135,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.document.groups,
         project.document.switch_groups,
         project.layer_list.solo,
+        project.footage.arrivals,
         session.display.overlays,
         session.export.frame_box,
         session.settings.preferences,

@@ -21,7 +21,7 @@ from app.editor.actions.posing.pose_solver import stop_finishing_pose
 from app.editor.actions.project_files import autosaving, saving
 from app.editor.actions.timing import sound_playback
 from app.editor.actions.updates import frame_update
-from app.editor.layering import reloading
+from app.editor.layering import footage
 from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
@@ -242,7 +242,7 @@ class WindowFrame:
             # Before the panels, which read the playhead's frame.
             self._follow.run_guarded(session)
         if self._pace.begin_frame(session):
-            reloading.watch_drawings(session)
+            footage.watch_files(session)
 
     def _draw_over_panels(self) -> None:
         self.run_guarded(self._collect_key_actions)

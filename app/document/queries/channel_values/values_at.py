@@ -9,6 +9,7 @@ from app.document.channels.kind import Channel, ChannelKind
 from app.document.channels.kinds import (
     CAMERA,
     DRAW_ORDER,
+    FOOTAGE_TIME,
     OPACITY,
     SLIDER,
     SWITCH,
@@ -20,6 +21,7 @@ from app.document.channels.sounds import Sound
 from app.document.channels.values import Camera, DrawOrder
 from app.document.layer import Layer
 from app.document.model import Document
+from app.document.queries.channel_values.footage_at import footage_time_at
 from app.document.queries.channel_values.repeats import (
     held_key_at,
     repeated_keys,
@@ -147,6 +149,8 @@ def value_at(document: Document, channel: Channel[V], frame: float) -> V:
             found = unkeyed_value(layer, channel) if value is None else value
         elif kind is VISIBILITY:
             found = is_visible(document, layer, frame)
+        elif kind is FOOTAGE_TIME:
+            found = footage_time_at(document, layer, frame)
         else:
             keys, rest = layer.keys_of(kind, channel.part), rest_value(layer, kind, channel.part)
             repeats = repeated_keys(keys, layer.cycles, document.frames.last, rest)

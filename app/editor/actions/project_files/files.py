@@ -23,6 +23,7 @@ from app.editor.work.layer_runtime import LayerRuntime, LayerRuntimes
 from app.errors import display_name
 from app.storage import (
     LAYERED,
+    VIDEOS,
     FileLock,
     FileLockedError,
     OpenedScene,
@@ -35,6 +36,7 @@ from app.storage import (
     open_merged,
     open_picture,
     open_pictures,
+    open_video,
     project_digest,
     refuse_program_file,
     run_parallel,
@@ -46,7 +48,7 @@ PICTURES = (
     *(".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".ppm", ".tga", ".ico"),
     ".avif",
 )
-OPENABLE = (PROJECT, *PICTURES, *LAYERED)
+OPENABLE = (PROJECT, *PICTURES, *LAYERED, *VIDEOS)
 ONE_PICTURE = _("Open as one picture")
 LOOK = 2.0  # seconds between two checks whether files still exist
 
@@ -244,6 +246,8 @@ def _layer_runtimes(document: Document, pictures: Mapping[int, Picture]) -> dict
 def _read(path: Path, meshing: Meshing | None, *, as_one_picture: bool) -> OpenedFile:
     if path.suffix.lower() == PROJECT:
         return _read_project(path)
+    if path.suffix.lower() in VIDEOS:
+        return with_layer_runtimes(open_video(path))
     read = open_picture
     if is_layered(path):
         read = open_merged if as_one_picture else open_layered

@@ -11,6 +11,7 @@ from app.editor.actions.posing.pose_solver import update_drag
 from app.editor.actions.posing.reach_limit import show_stopped_drag
 from app.editor.actions.timing import sounds
 from app.editor.actions.tracking.recording import update_track_keys
+from app.editor.actions.updates.footage_jobs import decode_footage
 from app.editor.actions.updates.stage_jobs import due_jobs, is_worth_preparing
 from app.editor.parts.timeline.timeline_state import measure_key_errors
 from app.editor.project import Project
@@ -78,6 +79,7 @@ STEPS: tuple[Callable[[Session], None], ...] = (
     resolving.rebuild_changed_cut_out,
     preset_setup.update_motion_setup,
     ask_for_missing,
+    decode_footage,
     sounds.update_waveforms,
     settle_shown,
 )

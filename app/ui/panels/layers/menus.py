@@ -159,8 +159,13 @@ def _kind(project: Project, layer: Layer) -> list[Action]:
         actions.append(do(toggle_reference, layer.id))
     if layer.deform_group is not None or project.document.is_deform_group(layer.id):
         return actions
+    reason = (
+        None if layer.footage is None else _("Footage cannot be posed. Replace its picture first.")
+    )
     if menu_entry(
-        _("Make posable") if layer.still else _("Make still picture"), icons.ICON_FA_IMAGE
+        _("Make posable") if layer.still else _("Make still picture"),
+        icons.ICON_FA_IMAGE,
+        reason=reason,
     ):
         turn = make_posable if layer.still else make_still
         actions.append(do(turn, layer.id))

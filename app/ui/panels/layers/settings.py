@@ -51,6 +51,7 @@ from app.ui.panels.layers.channels import (
     draw_transform_channel,
     draw_value_channels,
 )
+from app.ui.panels.layers.footage import draw_footage
 from app.ui.style.sliders import Scale, slider
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
@@ -106,7 +107,9 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     if is_deform_group:
         return actions
     actions += draw_order_channel(project.document, look, layer, frame)
-    if layer.still:
+    if layer.footage is not None:
+        actions += draw_footage(project, look, layer, frame)
+    elif layer.still:
         small_text(look, _("A still picture, shown as it was drawn."))
         if imgui.button(_("Make posable"), ImVec2(FILL, 0)):
             actions.append(do(make_posable, identity))

@@ -98,11 +98,11 @@ class GpuResources:
             self._heated[pose] = wanted
 
     def refresh(self) -> None:
-        """Update the pictures to their present cut-outs."""
+        """Update the pictures to their present cut-outs, and to the shown frame of footage."""
         used = {self._key(layer): layer for layer in self.project.runtimes.layers}
         for key in list(self._pictures):
             if key in used:
-                self._pictures[key].write(self.project.runtimes.layers[used[key]].cut.value.texture)
+                self._pictures[key].write(self._pixels(used[key]))
             else:
                 # Undo may bring it back, but its mesh is gone.
                 self._pictures.pop(key).release()
@@ -179,10 +179,18 @@ class GpuResources:
             texture = self.project.runtimes.layers[layer].cut.value.texture
             context = self._renderer.programs.context
             self._pictures[key] = GpuPicture(context, texture, is_for_screen=True)
+            self._pictures[key].write(self._pixels(layer))
             release_pages(texture)
         return self._pictures[key]
+
+    def _pixels(self, layer: int) -> Bytes:
+        """Return the shown frame of a layer's footage, or else its picture as it is cut out."""
+        moving = self.project.footage_picture(self.project.document.layer(layer))
+        still = self.project.runtimes.layers[layer].cut.value.texture
+        return still if moving is None else moving
 
     def _key(self, layer: int) -> tuple[int | None, Picture]:
         runtime = self.project.runtimes.layers[layer]
         is_whole = runtime.cut.value.texture is runtime.picture.rgba
+        is_whole &= self.project.document.layer(layer).footage is None
         return None if is_whole else layer, runtime.picture
