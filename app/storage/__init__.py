@@ -62,6 +62,7 @@ from app.storage.footage.footage_reader import FootageReader as FootageReader
 from app.storage.footage.opening import (
     VIDEOS as VIDEOS,
     OpenedFootage as OpenedFootage,
+    copy_footage as copy_footage,
     inspect_footage as inspect_footage,
     is_footage as is_footage,
     is_video as is_video,

@@ -3,9 +3,11 @@
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from harness import Robot
+from PIL import Image, ImageDraw
 from sound_files import sound, wav
 
 from app.document import VOLUME, Channel, Target, channel_commands, sound_commands
@@ -16,6 +18,7 @@ from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.timing import cycles, keys, sounds
 from app.editor.actions.timing.channel_keys import key_camera
+from app.editor.layering.footage import add_footage
 from app.editor.layering.layer_selection import set_active_layer, toggle_tree_row
 from app.editor.poses import copying, library, pasting
 from app.storage import sample_images
@@ -247,6 +250,31 @@ def _sound(window: Film, path: Path) -> None:
     _still(window, path)
 
 
+def _footage(window: Film, path: Path) -> None:
+    """A rough wave in numbered pictures, as a reference over a child."""
+    open_sample(window, "friend", frame=0)
+    width, height = project_of(window).document.canvas
+    with TemporaryDirectory() as folder:
+        for number in range(24):
+            rough = Image.new("RGBA", (width, height))
+            draw, centre = ImageDraw.Draw(rough), complex(width / 2, height * 0.45)
+            lift = 0.6 + 0.5 * np.sin(number / 24 * 2 * np.pi)
+            hand = centre + 0.3 * width * np.exp(-1j * lift)
+            for end in (hand, centre - 0.25 * width * np.exp(-0.5j), centre + 0.35j * height):
+                ends = [centre.real, centre.imag, end.real, end.imag]
+                draw.line(ends, fill=(30, 90, 220, 255), width=width // 40)
+            rough.save(Path(folder, f"rough_{number:02}.png"))
+        add_footage(window.session, Path(folder, "rough_00.png"), is_reference=True)
+        window.settle()
+        window.act(playback.seek, 8)
+        window.show_tab("Layers")
+        window.settle()
+        scroll_to(window, "//Layers/**/##footage speed")
+        for toast in tuple(window.session.notices.toasts):
+            window.session.notices.dismiss(toast)
+        _still(window, path)
+
+
 def _export(window: Film, path: Path) -> None:
     """What will be exported of an octopus."""
     open_sample(window, "octopus", frame=28)
@@ -318,6 +346,7 @@ STILLS: dict[str, Callable[[Film, Path], None]] = {
     "mouths": _mouths,
     "camera": _camera,
     "sound": _sound,
+    "footage": _footage,
     "export": _export,
     "formats": _formats,
     "limit": _limit,

@@ -30,6 +30,7 @@ from app.errors import LissomError, display_name
 from app.storage import (
     VIDEOS,
     OpenedFootage,
+    copy_footage,
     file_time,
     inspect_footage,
     make_footage_layer,
@@ -39,6 +40,7 @@ from app.texts import _
 
 ADDING_FOOTAGE = JobKind(_("Adding footage"), _("The footage cannot be added"))
 FINDING = JobKind(_("Finding footage"), _("The footage was not replaced"))
+COLLECTING = JobKind(_("Copying footage"), _("The footage was not copied"), "keep")
 MOVING = (*VIDEOS, *PICTURES)
 # Numbered pictures whose times are compared; of more, only the folder's.
 MOST_WATCHED = 500
@@ -186,6 +188,38 @@ def reload_footage(session: Session, project: Project, identity: int) -> None:
     footage = project.document.layer(identity).footage
     if footage is not None:
         replace_footage(session, identity, Path(footage.folder, footage.files[0]))
+
+
+@named_action(
+    _("Collect footage"),
+    hint=_("Copy the files of all footage into a folder beside the project"),
+    why_disabled=lambda _, project: _why_nothing_collects(project),
+)
+@with_project
+def collect_footage(session: Session, project: Project) -> None:
+    """Copy all files of footage on the worker, and let the layers use the copies."""
+    path = project.file.path
+    if path is None:
+        return
+    target = path.parent / _("{name} footage").format(name=path.stem)
+    used = {each.footage for each in project.document.layers if each.footage is not None}
+
+    def work() -> dict[Footage, Footage]:
+        copied = {footage: copy_footage(footage, target) for footage in used}
+        return {footage: copy for footage, copy in copied.items() if copy != footage}
+
+    def done(copied: dict[Footage, Footage]) -> None:
+        _change_footage(session, project, copied)
+        text = _("The footage is in {folder}. Save the project.").format(folder=target.name)
+        session.notices.show(text, tone="good")
+
+    run_job(session, COLLECTING, work, done)
+
+
+def _why_nothing_collects(project: Project) -> str | None:
+    if all(layer.footage is None for layer in project.document.layers):
+        return _("There is no footage.")
+    return None if project.file.path is not None else _("Save the project first.")
 
 
 def watch_files(session: Session) -> None:

@@ -1,7 +1,8 @@
 """Opening footage: what a file or numbered pictures hold, and their readers."""
 
+import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from math import gcd
 from pathlib import Path
@@ -110,6 +111,50 @@ def open_footage(footage: Footage) -> FootageReader:
             )
         )
     return reader
+
+
+def copy_footage(footage: Footage, folder: Path) -> Footage:
+    """Copy the files of footage into a folder, and return the footage of the copies.
+
+    A folder of its own is made for footage whose names are taken there by other files.
+    """
+    source, target = Path(footage.folder), folder / display_name(Path(footage.name).stem)
+    if source.parent == folder:
+        return footage
+    number = 1
+    while target.exists() and not _has_same_files(footage, target):
+        number += 1
+        target = folder / f"{display_name(Path(footage.name).stem)} {number}"
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        for name in footage.files:
+            if not _is_same_file(source / name, target / name):
+                shutil.copy2(source / name, target / name)
+    except OSError as error:
+        raise LissomError(
+            _("cannot copy {name}: {reason}").format(
+                name=display_name(footage.name), reason=error.strerror or error
+            )
+        ) from error
+    return replace(footage, folder=str(target.absolute()))
+
+
+def _has_same_files(footage: Footage, folder: Path) -> bool:
+    """Return whether a folder has no other files under the names of footage."""
+    source = Path(footage.folder)
+    return all(
+        _is_same_file(source / name, folder / name)
+        for name in footage.files
+        if (folder / name).exists()
+    )
+
+
+def _is_same_file(one: Path, other: Path) -> bool:
+    """Return whether two files have the same size and time, as a copy has."""
+    if not (one.is_file() and other.is_file()):
+        return False
+    here, there = one.stat(), other.stat()
+    return (here.st_size, int(here.st_mtime)) == (there.st_size, int(there.st_mtime))
 
 
 def _video_reader(path: Path) -> "VideoReader":

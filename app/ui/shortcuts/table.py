@@ -100,6 +100,7 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
         (keys.add_marker_at_playhead, channel_keys.key_camera, timeline_drag.fit_timeline),
         (preset_setup.begin_motion_setup, rigging.rig_layer),
         (sounds.ask_sound_to_add, footage.ask_footage_to_add, footage.ask_reference_to_add),
+        (footage.collect_footage,),
         (joint_placement.mirror_joints, joint_placement.reset_joints),
         (apply_motion.cancel_motion_job,),
     ),

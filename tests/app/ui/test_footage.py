@@ -10,10 +10,12 @@ from PIL import Image
 
 from app.document import FOOTAGE_TIME, Channel, FootageTime, FrameRange, scene_commands
 from app.editor.actions import editing, playback
+from app.editor.actions.project_files import saving
 from app.editor.actions.timing.channel_keys import insert_channel_key, set_channel_value
 from app.editor.actions.updates.footage_jobs import DECODING
 from app.editor.layering import footage
 from app.editor.layering.pictures import drop_files, replace_picture
+from app.storage import copy_footage, load_project, open_footage
 
 COUNT = 20
 
@@ -215,3 +217,23 @@ def test_opened_video_is_a_scene_of_its_length(window, tmp_path):
     project = window.open(write_video(tmp_path / "walk.mp4", 12))
     assert project.document.frames == FrameRange(0, 11)
     assert project.document.fps == 24
+
+
+def test_collected_footage_makes_the_project_complete(window, project, moving, tmp_path):
+    home = tmp_path / "home"
+    home.mkdir()
+    saving.write_project(window.session, home / "bar.lissom", None)
+    window.settle()
+    window.act(footage.collect_footage)
+    window.settle()
+    layer = project.document.layer(moving.id)
+    assert layer.footage.folder == str(home / "bar footage" / "walk_000")
+    saving.write_project(window.session, home / "bar.lissom", None)
+    window.settle()
+    (tmp_path / "walk").rename(tmp_path / "gone")
+    moved = home.rename(tmp_path / "moved")
+    opened = load_project(moved / "bar.lissom").layers[-1].footage
+    with open_footage(opened) as reader:
+        assert number_of(reader.read(11)) == 11
+    # Copies that are there already are used again.
+    assert copy_footage(opened, moved / "bar footage") == opened

@@ -87,6 +87,7 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
             actions.append(do(part_group, identity))
     else:
         actions += _draw_painting(project, look, layer, frame)
+        actions += draw_footage(project, look, layer, frame)
     for group in project.document.groups_around(layer.group):
         actions += _group(look, group)
     changed = imgui.checkbox(_("Reference only"), layer.reference)[0]
@@ -107,13 +108,11 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     if is_deform_group:
         return actions
     actions += draw_order_channel(project.document, look, layer, frame)
-    if layer.footage is not None:
-        actions += draw_footage(project, look, layer, frame)
-    elif layer.still:
+    if layer.still and layer.footage is None:
         small_text(look, _("A still picture, shown as it was drawn."))
         if imgui.button(_("Make posable"), ImVec2(FILL, 0)):
             actions.append(do(make_posable, identity))
-    elif imgui.button(_("Make still picture"), ImVec2(FILL, 0)):
+    elif not layer.still and imgui.button(_("Make still picture"), ImVec2(FILL, 0)):
         actions.append(do(make_still, identity))
     return actions
 
