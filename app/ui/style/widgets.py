@@ -43,8 +43,9 @@ def small_text(look: Look, text: str, colour: ImVec4 | None = None) -> None:
 def label(look: Look, text: str) -> None:
     """Label the next field on the same line, which takes the rest of the width."""
     imgui.align_text_to_frame_padding()
+    end = imgui.get_cursor_pos_x() + imgui.calc_text_size(text).x
     imgui.text_colored(look.palette.dim, text)
-    imgui.same_line(max(LABEL_WIDTH * look.em, imgui.calc_text_size(text).x + 0.5 * look.em))
+    imgui.same_line(max(LABEL_WIDTH * look.em, end + 0.4 * look.em))
     imgui.set_next_item_width(FILL)
 
 
