@@ -17,6 +17,7 @@ class Action:
     verb: Callable[..., None]
     arguments: tuple[Any, ...] = ()  # the other arguments
     keywords: tuple[tuple[str, Any], ...] = ()  # keyword arguments
+    is_by_key: bool = False  # whether a key asks for it, and not a widget
 
     @property
     def name(self) -> str:

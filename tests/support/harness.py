@@ -5,7 +5,7 @@ import threading
 import time
 from collections.abc import Callable
 from copy import copy
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -204,9 +204,9 @@ class Harness:
         for _ in range(count):
             self._frame()
 
-    def act(self, verb: Callable[..., None], *arguments: object) -> None:
-        """Do something as a panel would ask for it, with its errors told as theirs are."""
-        self.program.queue_action(do(verb, *arguments))
+    def act(self, verb: Callable[..., None], *arguments: object, is_by_key: bool = False) -> None:
+        """Do something as a panel or a key would ask for it, with its errors told as theirs are."""
+        self.program.queue_action(replace(do(verb, *arguments), is_by_key=is_by_key))
         self.frames()
 
     def settle(self) -> None:

@@ -1,6 +1,7 @@
 """The tools of the viewport: the selected one, and the one that has the pointer."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol, get_args
 
@@ -170,6 +171,16 @@ class ToolState(Revised):
         if widget != self.widget:
             self.widget, self.widget_gesture = widget, object() if widget else None
         self.is_widget_pressed = is_pressed
+
+    @contextmanager
+    def without_widget(self) -> Iterator[None]:
+        """Let commands belong to no widget: those of keys and of finished jobs."""
+        held = self.widget_gesture, self.is_widget_pressed
+        self.widget_gesture, self.is_widget_pressed = None, False
+        try:
+            yield
+        finally:
+            self.widget_gesture, self.is_widget_pressed = held
 
     def reset(self) -> None:
         """Go back to posing, as for another project."""

@@ -40,8 +40,7 @@ def _save_pose(session: Session, project: Project, layer: Layer, pose: Pose) -> 
     (key,) = pose_insertion.fit_keys_to_layer(
         project, project.selection.active, taken, layer.bounds
     )
-    # Not as the edit of a widget, whose later edits may be void while it is still pressed.
-    project.history.do(pose_commands.save_pose(project.selection.active, key.pose))
+    editing.edit_layer(session, pose_commands.save_pose, key.pose)
     project.pose_edits.pick(project.selection.active, project.layer.library[-1].name)
 
 

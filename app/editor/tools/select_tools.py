@@ -1,16 +1,17 @@
 """Tools that select handles by a click or a box, and layers by a click."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 from app.editor.actions import editing
+from app.editor.layering.layer_list import is_layer_at
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.overlay_shapes import AreaShape, LineShape, OverlayShape
 from app.editor.parts.tools import Hint
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.tools.tool import PointerHit, Tool
+from app.editor.tools.tool import PointerHit, Tool, to_scene
 from app.motion import BoundingBox
 from app.texts import _
 
@@ -79,22 +80,31 @@ class SelectTool(Tool):
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class PickLayerTool(Tool):
-    """A press makes another layer active; until the release it can be cancelled."""
+    """A press makes another layer active; until the release it can be cancelled.
+
+    Where the active layer is, covered or not, it takes a double click. Its first click may have
+    added a handle, which is taken back.
+    """
 
     last: int
 
     @classmethod
     def hints(cls, _session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        layer = pressed_other_layer(project, spot)
-        if layer is None:
+        layer, double = pressed_other_layer(project, spot), replace(spot, is_double=True)
+        covering = pressed_other_layer(project, double) if layer is None else layer
+        if covering is None:
             return ()
-        name = project.document.layer(layer).name
-        return (Hint(_("click to pose {layer}").format(layer=name)),)
+        name = project.document.layer(covering).name
+        text = _("double-click to pose {layer}") if layer is None else _("click to pose {layer}")
+        return (Hint(text.format(layer=name)),)
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Make the visible layer at the place active, if it is another one."""
-        layer = pressed_other_layer(project, spot)
+        layer, added = pressed_other_layer(project, spot), _added_by_click(project, spot)
+        if added and spot.is_double and spot.layer not in {None, project.selection.active}:
+            layer = spot.layer
+            project.history.undo()
         if layer is None:
             return None
         choosing = cls(project=project, last=project.selection.active)
@@ -107,7 +117,20 @@ class PickLayerTool(Tool):
 
 
 def pressed_other_layer(project: Project, spot: PointerHit) -> int | None:
-    """Return the layer that a press selects, if it is not the active layer."""
+    """Return the layer that a press selects, if it is not the active layer.
+
+    Where the active layer is visible or covered, only a double click or Alt selects another one.
+    """
     if spot.handle is not None or spot.on_gizmo or spot.ctrl or spot.shift:
         return None
-    return None if spot.layer in {None, project.selection.active} else spot.layer
+    active = project.selection.active
+    is_there = is_layer_at(project, active, to_scene(project, spot.place))
+    if is_there and not (spot.alt or spot.is_double):
+        return None
+    return None if spot.layer in {None, active} else spot.layer
+
+
+def _added_by_click(project: Project, spot: PointerHit) -> bool:
+    """Return whether the last step has added the handle at a place."""
+    is_new = project.pose_edits.with_new_handles is project.document
+    return is_new and spot.handle is not None and project.selection.handles == {spot.handle}

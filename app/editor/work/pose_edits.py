@@ -1,8 +1,8 @@
-"""What edits of poses remember: the last flip, a blend, the picked pose, choices for sliders."""
+"""What edits of poses remember: a flip, a blend, the picked pose, sliders, new handles."""
 
 from dataclasses import dataclass, replace
 
-from app.document import Keyframe, Pose
+from app.document import Document, Keyframe, Pose
 from app.editor.work.revised import Revised
 
 
@@ -43,6 +43,12 @@ class PoseEdits(Revised):
     slider_poses: frozenset[str | None] = frozenset({None})
     # Sliders that go beyond their poses, by layer id and name.
     wide_sliders: frozenset[tuple[int, str]] = frozenset()
+    # The document right after handles were added; None before.
+    with_new_handles: Document | None = None
+
+    def note_new_handles(self, document: Document) -> None:
+        """Note a document whose last change added handles."""
+        self.with_new_handles = document
 
     def note_flip(self, flip: LastFlip) -> None:
         self.last_flip = flip

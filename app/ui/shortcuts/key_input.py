@@ -5,6 +5,7 @@ A key acts by the character that it types, as well as by its place on the keyboa
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 from imgui_bundle import imgui
 
@@ -41,7 +42,7 @@ def collect_key_actions(
     if typed or [key for key in PRESSED_KEYS if imgui.is_key_down(key)]:
         # Arrow keys that move something do not also go to a key.
         actions += _nudges(session) or _press_shortcuts(session, typed, plus_key())
-    return actions + _space(session)
+    return [replace(action, is_by_key=True) for action in actions + _space(session)]
 
 
 def _typed_signs() -> set[int]:

@@ -45,6 +45,11 @@ class ActionQueue:
             done += 1
         self.waiting = actions[done:]
 
+    def deliver(self) -> None:
+        """Deliver results of jobs while a widget is in use, which has not asked for them."""
+        with self._session.tools.without_widget():
+            self._session.jobs.deliver()
+
     def _apply(self, action: Action) -> bool:
         """Apply an action; return False if it has to wait."""
         project = self._session.project
@@ -53,7 +58,10 @@ class ActionQueue:
         if action.verb not in UNLOGGED:
             self._session.diagnostics.log_action(action.name)
         try:
-            with nullcontext() if project is None else project.history.limited(PATIENCE):
+            with (
+                nullcontext() if project is None else project.history.limited(PATIENCE),
+                self._session.tools.without_widget() if action.is_by_key else nullcontext(),
+            ):
                 action.apply(self._session)
         except UnfinishedStepError:
             return False

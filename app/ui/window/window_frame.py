@@ -262,9 +262,9 @@ class WindowFrame:
         if self.session.display.panel_to_focus:
             self._docking.bring_to_front(self.session.display.panel_to_focus)
             self.session.display.focus_panel("")
-        # After the actions, so that a drag continues with the newest target, and before the picture
-        # is drawn, which shows the newest result.
-        self.run_guarded(self.session.jobs.deliver)
+        # After the actions, which set the newest target, and before the picture is drawn.
+        is_in_use = self.session.tools.widget != 0
+        self.run_guarded(self.queue.deliver if is_in_use else self.session.jobs.deliver)
         self._run_update_steps()
         self._pace.end_frame(self.session)
         if self.session.is_quitting:

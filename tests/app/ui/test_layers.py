@@ -109,14 +109,17 @@ def identity(project, name):
 def test_a_click_chooses_the_layer_that_is_seen(window, scene):
     assert scene.layer.name == "arm"
 
-    def click(place, key=None):
+    def click(place, key=None, *, double=False):
         def run(robot):
             robot.mouse_move_to_pos(
                 window.point(scene.layer_runtime.shown.placement.apply_inverse(place))
             )
             if key is not None:
                 robot.key_down(int(key))
-            robot.mouse_click(0)
+            if double:
+                robot.mouse_double_click(0)
+            else:
+                robot.mouse_click(0)
             if key is not None:
                 robot.key_up(int(key))
 
@@ -126,9 +129,16 @@ def test_a_click_chooses_the_layer_that_is_seen(window, scene):
     click(80 + 60j)
     assert scene.layer.name == "body"
     assert not scene.layer.handles
-    # The arm lies over the body here.
+    # The arm lies over the body here: a click stays on the body.
     click(100 + 118j)
+    assert scene.layer.name == "body"
+    assert len(scene.layer.handles) == 1
+    editing.undo(window.session)
+    window.settle()
+    document = scene.document
+    click(100 + 118j, double=True)
     assert scene.layer.name == "arm"
+    assert scene.document is document, "the handle of the first click is gone"
     click(100 + 118j, window.Key.mod_alt)
     assert scene.layer.name == "body"
     # On the layer that is chosen a click adds a handle.

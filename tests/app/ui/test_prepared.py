@@ -3,10 +3,12 @@
 import pytest
 from bars import bend_bar
 
-from app.document import track_commands
+from app.document import Target, track_commands
 from app.document.channels.tracks import Track, TrackKey
 from app.editor import Session
 from app.editor.actions import editing, playback
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import drag_handles
 from app.editor.parts.settings import SessionSettings
 from app.editor.work.jobs import Jobs
 from app.motion import StreamedVertices
@@ -56,3 +58,21 @@ def test_window_of_tests_prepares_only_what_is_shown(window):
     found = prepared(bent)
     assert found.pop("in-betweens")
     assert not any(found.values()), found
+
+
+@pytest.mark.usefixtures("everything")
+def test_new_handle_starts_nothing_until_it_is_dragged_or_played(window, bent):
+    window.settle()
+    add_handle(window.session, complex(*bent.document.canvas) / 3)
+    for _ in range(5):
+        window.frames()
+        assert not window.session.jobs.kinds
+    assert bent.layer_runtime.shown.is_current
+    (new,) = bent.selection.handles
+    drag_handles(window.session, {new: Target(position=complex(*bent.document.canvas) / 3 + 20)})
+    window.settle()
+    assert bent.layer_runtime.store.has(bent.clip)
+    add_handle(window.session, complex(*bent.document.canvas) / 2)
+    playback.toggle_play(window.session)
+    window.settle()
+    assert bent.layer_runtime.store.has(bent.clip)

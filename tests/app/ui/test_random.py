@@ -301,9 +301,9 @@ class Walk:
         return bool(self.rng.random() < share)
 
     def act(self, verb, *arguments: object) -> None:
-        """Do something as a panel would ask for it."""
+        """Do something as a key would ask for it, whatever is in hand."""
         self.note(Action(verb).name, *arguments)
-        self.window.act(verb, *arguments)
+        self.window.act(verb, *arguments, is_by_key=True)
         self.finish_waiting()
 
     def finish_waiting(self) -> None:
@@ -349,7 +349,7 @@ class Walk:
         possible = [name for name in NAMED if ACTIONS[name].disabled_reason(self.session) is None]
         name = self.choice(possible)
         self.note(name)
-        self.window.act(ACTIONS[name].action.apply)
+        self.window.act(ACTIONS[name].action.apply, is_by_key=True)
 
     def press_arrow(self) -> None:
         shift = int(imgui.Key.mod_shift) if self.chance(0.2) else 0

@@ -37,6 +37,7 @@ def add_handle(
     project.history.do(
         handle_commands.add_handle(project.selection.active, rest), gesture=gesture or object()
     )
+    project.pose_edits.note_new_handles(project.document)
     project.selection.select_handles(frozenset({identity}))
 
 
@@ -80,6 +81,7 @@ def suggest_handles(session: Session, project: Project) -> None:
     project.history.do(
         handle_commands.add_handles(project.selection.active, handles), gesture=gesture
     )
+    project.pose_edits.note_new_handles(project.document)
     added = {handle.id for handle in project.layer.handles} - {h.id for h in layer.handles}
     project.selection.clear()
     count = len(added)

@@ -70,7 +70,7 @@ def due_jobs(session: Session, project: Project) -> Iterator[Job]:
                     room = next(_stream(session, project), None)
                 yield room or job
                 return
-    if project.history.is_unfinished:
+    if _is_unfinished(project):
         # The jobs below take longer than a pause of the drag.
         return
     if _prepares_all(session, project):
@@ -132,7 +132,7 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
         for clip, runtime in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
             if is_wanted(clip, runtime.store):
                 yield SKETCHING, runtime, clip
-    if project.history.is_unfinished:
+    if _is_unfinished(project):
         return
     for runtime in project.runtimes.layers.values():
         if runtime.comparison is not None:
@@ -262,4 +262,15 @@ def _prepares_all(session: Session, project: Project) -> bool:
 def is_worth_preparing(session: Session, project: Project) -> bool:
     """Return whether in-betweens are worth preparing: a drag changes them until it rests."""
     is_at_rest = project.drag is not None and project.drag.is_at_rest
-    return not project.history.is_unfinished or is_at_rest or session.display.overlays.onion
+    return not _is_unfinished(project) or is_at_rest or session.display.overlays.onion
+
+
+def _is_unfinished(project: Project) -> bool:
+    """Return whether more of the last change is to come, such as the first drag of a new handle.
+
+    A new handle moves nothing, but others move by it once it is dragged. In-betweens that the
+    person watches are made at once.
+    """
+    is_new = project.pose_edits.with_new_handles is project.document
+    awaits_drag = is_new and project.timeline.playhead.since is None
+    return project.history.is_unfinished or awaits_drag

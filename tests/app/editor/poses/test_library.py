@@ -1,5 +1,7 @@
 """Poses that are kept, and blended into others."""
 
+from dataclasses import replace
+
 import pytest
 from animations import moving_document
 from invariants import check_pose
@@ -8,10 +10,12 @@ from sessions import go, session_of, settle
 from app.document import pose_commands, scene_commands
 from app.document.commands import handle_commands
 from app.document.commands.layers import layer_commands
+from app.editor.action import do
 from app.editor.actions import editing
 from app.editor.poses import library
 from app.editor.tools import tool_pointer
 from app.storage import Preferences
+from app.ui.window.action_queue import ActionQueue
 
 
 @pytest.fixture
@@ -37,13 +41,18 @@ def test_an_in_between_is_kept_as_the_nearest_pose(session):
     assert session.project.layer.key_frames == {0, 6}
 
 
-def test_a_pose_is_kept_while_a_widget_is_pressed_whose_edits_have_ended(session):
+def test_key_saves_a_pose_while_a_widget_is_pressed_whose_edits_have_ended(session):
     document, tools = session.project.document, session.tools
     tool_pointer.note_widget_in_use(session, 5, is_pressed=True)
     editing.edit_document(session, scene_commands.set_loop(loop=not document.loop))
     session.project.history.commit()
     assert session.project.history.has_ended(tools.widget_gesture)
-    assert keep(session, 6).name
+    go(session, 6)
+    queue = ActionQueue(session, pytest.fail)
+    queue.apply([replace(do(library.save_pose_to_library), is_by_key=True)])
+    assert session.project.layer.library
+    assert session.project.history.has_ended(tools.widget_gesture), "the widget is still pressed"
+    assert tools.is_widget_pressed
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.7])
