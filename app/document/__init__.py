@@ -89,10 +89,12 @@ from app.document.commands.command import (
 )
 from app.document.commands.keys import (
     channel_commands as channel_commands,
+    curve_commands as curve_commands,
     cycle_commands as cycle_commands,
     key_commands as key_commands,
     track_commands as track_commands,
 )
+from app.document.commands.keys.retime import TimeScale as TimeScale
 from app.document.commands.layers import (
     deform_group_commands as deform_group_commands,
     footage_commands as footage_commands,
@@ -176,6 +178,20 @@ from app.document.queries.channel_values.channel_keys import (
     track_display_frame as track_display_frame,
     track_in as track_in,
     track_source_frame as track_source_frame,
+)
+from app.document.queries.channel_values.curve_tangents import (
+    Side as Side,
+    TangentHandle as TangentHandle,
+    find_tangent_handle as find_tangent_handle,
+    find_velocity as find_velocity,
+    with_tangent_handle as with_tangent_handle,
+    with_velocity as with_velocity,
+)
+from app.document.queries.channel_values.curves import (
+    ChannelCurve as ChannelCurve,
+    curves_of as curves_of,
+    numbers_at as numbers_at,
+    sample_curves as sample_curves,
 )
 from app.document.queries.channel_values.footage_at import (
     footage_picture_at as footage_picture_at,

@@ -38,7 +38,7 @@ PARENT_CIRCLE = N_(
 MAX_CHANGES = 100_000
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, weakref_slot=True, kw_only=True, eq=False)
 class Document:
     """All contents of a project file."""
 

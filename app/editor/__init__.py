@@ -25,16 +25,24 @@ from app.editor.parts.dialogs import (
 from app.editor.parts.export_state import ExportRun as ExportRun
 from app.editor.parts.notices import Toast as Toast
 from app.editor.parts.timeline.gestures import (
+    CurvePoint as CurvePoint,
     CycleDrag as CycleDrag,
     Edge as Edge,
     EdgeDrag as EdgeDrag,
+    GraphGesture as GraphGesture,
+    GraphPlace as GraphPlace,
     KeyBox as KeyBox,
     KeyDrag as KeyDrag,
+    PointBox as PointBox,
+    PointDrag as PointDrag,
+    PointScale as PointScale,
     ScrubDrag as ScrubDrag,
     SoundDrag as SoundDrag,
+    TangentDrag as TangentDrag,
     TimeDrag as TimeDrag,
     TimeGesture as TimeGesture,
 )
+from app.editor.parts.timeline.graph import NumberRanges as NumberRanges
 from app.editor.parts.timeline.time_range import TimeRangeView as TimeRangeView
 from app.editor.parts.tools import CutTool as CutTool, Hint as Hint, StiffnessTool as StiffnessTool
 from app.editor.parts.viewport_state import (

@@ -32,6 +32,7 @@ from app.editor.parts.export_state import ExportDestinations
 from app.editor.parts.layer_list import LayerListState
 from app.editor.parts.project_file import ProjectFile
 from app.editor.parts.selection import Selection
+from app.editor.parts.timeline.graph import GraphState
 from app.editor.parts.timeline.timeline_state import TimelineState
 from app.editor.parts.viewport_state import ViewportState, fit_view_around
 from app.editor.work.drag_session import DragSession
@@ -75,6 +76,7 @@ class Project(Revised):
     layer_setup: LayerSetup = field(default_factory=LayerSetup)
     pose_edits: PoseEdits = field(default_factory=PoseEdits)
     timeline: TimelineState = field(default_factory=TimelineState)
+    graph: GraphState = field(default_factory=GraphState)
 
     @property
     def document(self) -> Document:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Generic, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 from app.document.channels.easing import HOLD, LINEAR, Easing
 from app.document.channels.tangent_mode import TangentMode, require_tangent_mode
@@ -59,10 +59,30 @@ class Key(BaseKey, Generic[V]):
     """A value at a frame, and the segment to the next key."""
 
     value: V
+    # Velocity of each component of the kind through the key, per frame; None derives a velocity
+    # from the neighbouring keys. Empty derives all.
+    velocities: tuple[float | complex | None, ...] = ()
 
     def __hash__(self) -> int:
         # Cheap, because queries are cached by rows of thousands of keys.
         return hash((self.frame, self.value))
+
+    def velocity_of(self, component: int) -> Any:
+        """Return the key's own velocity of a component of the kind; None if it is derived."""
+        return self.velocities[component] if self.velocities else None
+
+    def retimed(self, frame: int, pace: float) -> Self:
+        """Return the key at another frame, with its velocities multiplied by `pace`."""
+        scaled = tuple(None if each is None else pace * each for each in self.velocities)
+        return (
+            replace(self, frame=frame, velocities=scaled)
+            if self.velocities
+            else (BaseKey.retimed(self, frame, pace))
+        )
+
+    def without_velocity(self) -> Self:
+        """Return the key without velocities of its own."""
+        return replace(self, velocities=()) if self.velocities else self
 
 
 @dataclass(frozen=True)  # no slots: Python 3.11 cannot combine them with Generic

@@ -4,16 +4,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum, auto
 from itertools import pairwise
+from math import inf
 from typing import Any, Generic, TypeVar
 
 from app.document.channels.easing import LINEAR, Easing
 from app.document.channels.key import BaseKey, Key, KeyedProperty
 from app.document.channels.tangent_mode import TangentMode
-from app.document.checks import NOTHING, Unknown
+from app.document.checks import MAX_COORDINATE, NOTHING, Unknown, require
 from app.errors import LissomError
 from app.texts import N_, _
 
 V = TypeVar("V")
+BAD_VELOCITIES = N_(
+    "{channel} of {owner!r}: the velocities of the key at frame {frame} do not fit its value."
+)
 KEYS_OUT_OF_ORDER = N_(
     "{channel} of {owner!r}: the keys at frames {before} and {after} are out of order."
 )
@@ -44,6 +48,8 @@ class ValueField:
     quantity: Quantity
     is_optional: bool = False  # whether it may be None
     default: object = ...  # of a script; ... if the field must be given
+    label: str = ""  # marked; empty if the field has no name of its own in the window
+    limits: tuple[float, float] = (-inf, inf)  # of each of its numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # no slots: they do not combine with Generic
@@ -92,6 +98,14 @@ class ChannelKind(Generic[V]):
         """Refuse values that the kind does not allow, and keys out of order."""
         for key in keys:
             self.check(key.value)
+            require(
+                len(key.velocities) in (0, len(self.components))
+                and all(abs(each or 0) <= MAX_COORDINATE for each in key.velocities),
+                BAD_VELOCITIES,
+                channel=_(self.label),
+                owner=owner,
+                frame=key.frame,
+            )
         require_order(keys, self.label, owner)
 
     @property

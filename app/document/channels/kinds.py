@@ -1,13 +1,16 @@
 """The table of all kinds of channels."""
 
 from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
 from math import exp, log, tau
 from types import MappingProxyType
 from typing import Any, Final
 
-from app.document.channels.key import KeyedProperty
+from app.document.channels.key import Key, KeyedProperty
 from app.document.channels.kind import ChannelKind, Quantity, ValueField
 from app.document.channels.tangent_mode import TangentMode
+from app.document.channels.tracks import MAX_TRACK_ROTATION
 from app.document.channels.values import (
     MAX_SCALE,
     MAX_ZOOM,
@@ -23,6 +26,22 @@ from app.texts import N_
 # Keys closer than this count as equal: pixels, radians, logarithms of zoom, and opacity.
 SAME_PLACE, SAME_TURN, SAME_ZOOM, SAME_OPACITY = 0.01, 1e-4, 1e-5, 1e-4
 SAME_VALUE, LARGEST_VALUE = 1e-6, 1e6  # of sliders
+# Limits of the numbers of keys: pixels, radians, and factors.
+PLACES, TURNS = (-MAX_COORDINATE, MAX_COORDINATE), (-MAX_TRACK_ROTATION, MAX_TRACK_ROTATION)
+ZOOMS, SCALES, SHARES = (1 / MAX_ZOOM, MAX_ZOOM), (1 / MAX_SCALE, MAX_SCALE), (0.0, 1.0)
+SLIDER_VALUES = (-LARGEST_VALUE / 2, LARGEST_VALUE / 2)
+
+
+def _components(*components: KeyedProperty[Any, Any]) -> tuple[KeyedProperty[Any, Any], ...]:
+    """Return the components of a kind, each with the velocities that its keys have for it."""
+    return tuple(
+        replace(each, velocity=partial(_velocity, component=index))
+        for index, each in enumerate(components)
+    )
+
+
+def _velocity(key: Key[Any], component: int) -> Any:
+    return key.velocity_of(component)
 
 
 def _clipped(place: complex) -> complex:
@@ -76,7 +95,16 @@ def require_value(value: complex) -> None:
 
 # Whose keys have classes of their own.
 POSE: Final = ChannelKind[Any](name="pose", label=N_("Poses"), icon="PERSON", is_blended=True)
-TRACK: Final = ChannelKind[Any](name="track", label=N_("Track"), icon="CROSSHAIRS", is_blended=True)
+TRACK: Final = ChannelKind[Any](
+    name="track",
+    label=N_("Track"),
+    icon="CROSSHAIRS",
+    fields=(
+        ValueField("place", Quantity.POINT, limits=PLACES),
+        ValueField("turn", Quantity.ANGLE, label=N_("Turn"), limits=TURNS),
+    ),
+    is_blended=True,
+)
 PARENT: Final = ChannelKind[Any](name="parent", label=N_("Parent"), icon="LINK")
 MARKER: Final = ChannelKind[Any](name="marker", label=N_("Markers"), icon="BOOKMARK")
 
@@ -85,12 +113,12 @@ CAMERA: Final = ChannelKind[Camera](
     label=N_("Camera"),
     icon="VIDEO",
     fields=(
-        ValueField("centre", Quantity.POINT),
-        ValueField("zoom", Quantity.FACTOR, default=1.0),
-        ValueField("turn", Quantity.ANGLE, default=0.0),
+        ValueField("centre", Quantity.POINT, limits=PLACES),
+        ValueField("zoom", Quantity.FACTOR, default=1.0, label=N_("Zoom"), limits=ZOOMS),
+        ValueField("turn", Quantity.ANGLE, default=0.0, label=N_("Turn"), limits=TURNS),
     ),
     make=Camera,
-    components=(
+    components=_components(
         KeyedProperty(lambda key: key.value.centre, SAME_PLACE),
         KeyedProperty(lambda key: log(key.value.zoom), SAME_ZOOM),
         KeyedProperty(lambda key: key.value.turn, SAME_TURN, period=tau),
@@ -102,12 +130,12 @@ TRANSFORM: Final = ChannelKind[Transform](
     label=N_("Transform"),
     icon="UP_DOWN_LEFT_RIGHT",
     fields=(
-        ValueField("shift", Quantity.POINT, default=0j),
-        ValueField("turn", Quantity.ANGLE, default=0.0),
-        ValueField("scale", Quantity.FACTOR, default=1.0),
+        ValueField("shift", Quantity.POINT, default=0j, limits=PLACES),
+        ValueField("turn", Quantity.ANGLE, default=0.0, label=N_("Turn"), limits=TURNS),
+        ValueField("scale", Quantity.FACTOR, default=1.0, label=N_("Scale"), limits=SCALES),
     ),
     make=Transform,
-    components=(
+    components=_components(
         KeyedProperty(lambda key: key.value.shift, SAME_PLACE),
         KeyedProperty(lambda key: key.value.turn, SAME_TURN, period=tau),
         KeyedProperty(lambda key: log(key.value.scale), SAME_ZOOM),
@@ -120,12 +148,12 @@ IK_TARGET: Final = ChannelKind[IkTarget](
     label=N_("IK target"),
     icon="BULLSEYE",
     fields=(
-        ValueField("place", Quantity.POINT),
-        ValueField("turn", Quantity.ANGLE, default=0.0),
-        ValueField("mix", Quantity.SHARE, default=1.0),
+        ValueField("place", Quantity.POINT, limits=PLACES),
+        ValueField("turn", Quantity.ANGLE, default=0.0, label=N_("Turn"), limits=TURNS),
+        ValueField("mix", Quantity.SHARE, default=1.0, label=N_("Mix"), limits=SHARES),
     ),
     make=IkTarget,
-    components=(
+    components=_components(
         KeyedProperty(lambda key: key.value.place, SAME_PLACE),
         KeyedProperty(lambda key: key.value.turn, SAME_TURN, period=tau),
         KeyedProperty(lambda key: key.value.mix, SAME_OPACITY),
@@ -137,8 +165,10 @@ OPACITY: Final = ChannelKind[float](
     name="opacity",
     label=N_("Opacity"),
     icon="DROPLET",
-    fields=(ValueField("opacity", Quantity.SHARE, default=1.0),),
-    components=(KeyedProperty(lambda key: key.value, SAME_OPACITY),),
+    fields=(
+        ValueField("opacity", Quantity.SHARE, default=1.0, label=N_("Opacity"), limits=SHARES),
+    ),
+    components=_components(KeyedProperty(lambda key: key.value, SAME_OPACITY)),
     join=lambda opacity: min(max(opacity, 0.0), 1.0),
     check=require_opacity,
     tangent_mode=TangentMode.CORNER,  # linear fades
@@ -157,7 +187,9 @@ VISIBILITY: Final = ChannelKind[bool](
     name="visibility",
     label=N_("Visibility"),
     icon="EYE",
-    fields=(ValueField("visible", Quantity.FLAG, default=True),),
+    fields=(
+        ValueField("visible", Quantity.FLAG, default=True, label=N_("Visible"), limits=SHARES),
+    ),
     holds_before=True,
 )
 SwitchMember = int | str  # the id of a layer, or the path of a group
@@ -172,8 +204,8 @@ TINT: Final = ChannelKind[tuple[float, float, float]](
     name="tint",
     label=N_("Tint"),
     icon="PALETTE",
-    fields=(ValueField("tint", Quantity.COLOUR, default=(1.0, 1.0, 1.0)),),
-    components=(
+    fields=(ValueField("tint", Quantity.COLOUR, default=(1.0, 1.0, 1.0), limits=SHARES),),
+    components=_components(
         KeyedProperty(lambda key: key.value[0], SAME_OPACITY),
         KeyedProperty(lambda key: key.value[1], SAME_OPACITY),
         KeyedProperty(lambda key: key.value[2], SAME_OPACITY),
@@ -188,8 +220,8 @@ FOOTAGE_TIME: Final = ChannelKind[FootageTime](
     label=N_("Footage time"),
     icon="FILM",
     fields=(
-        ValueField("start", Quantity.NUMBER, default=0.0),
-        ValueField("speed", Quantity.NUMBER, default=1.0),
+        ValueField("start", Quantity.NUMBER, default=0.0, label=N_("Starts at")),
+        ValueField("speed", Quantity.NUMBER, default=1.0, label=N_("Speed")),
         ValueField("loops", Quantity.FLAG, default=False),
     ),
     make=FootageTime,
@@ -199,7 +231,7 @@ DEPTH: Final = ChannelKind[float](
     name="depth",
     label=N_("Depth"),
     icon="CLONE",
-    fields=(ValueField("depth", Quantity.DEPTH),),
+    fields=(ValueField("depth", Quantity.DEPTH, label=N_("Depth"), limits=(-1.0, 1.0)),),
     of_handles=True,
     check=require_depth,
     moves_layer=True,
@@ -208,8 +240,8 @@ SLIDER: Final = ChannelKind[complex](
     name="slider",
     label=N_("Slider"),
     icon="SLIDERS",
-    fields=(ValueField("value", Quantity.VALUE),),
-    components=(KeyedProperty(lambda key: key.value, SAME_VALUE),),
+    fields=(ValueField("value", Quantity.VALUE, limits=SLIDER_VALUES),),
+    components=_components(KeyedProperty(lambda key: key.value, SAME_VALUE)),
     of_sliders=True,
     check=require_value,
     moves_layer=True,
@@ -219,8 +251,8 @@ VOLUME: Final = ChannelKind[float](
     name="volume",
     label=N_("Volume"),
     icon="VOLUME_HIGH",
-    fields=(ValueField("volume", Quantity.SHARE, default=1.0),),
-    components=(KeyedProperty(lambda key: key.value, SAME_OPACITY),),
+    fields=(ValueField("volume", Quantity.SHARE, default=1.0, label=N_("Volume"), limits=SHARES),),
+    components=_components(KeyedProperty(lambda key: key.value, SAME_OPACITY)),
     join=lambda volume: min(max(volume, 0.0), 1.0),
     check=require_volume,
     tangent_mode=TangentMode.CORNER,  # linear fades

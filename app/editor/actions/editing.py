@@ -194,9 +194,12 @@ def _select_text(session: Session, _project: Project) -> str:
 @named_action(_("Select all"), "Ctrl+A", detail=_select_text)
 @with_project
 def select_all(session: Session, project: Project) -> None:
-    """Select every handle or, in the timeline, the keys of all channels."""
+    """Select every handle or, in the timeline, the keys of all channels that it shows."""
     if session.display.is_timeline_focused:
-        select_channel_keys(session, movable_keys(project.document))
+        keys, graph = movable_keys(project.document), project.graph
+        graph.select_points(frozenset())
+        shown = graph.shown_channels(project.document, project.channel) if graph.is_open else keys
+        select_channel_keys(session, {each: keys[each] for each in keys if each in shown})
     else:
         select_handles(session, frozenset(handle.id for handle in project.layer.handles))
 

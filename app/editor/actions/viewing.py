@@ -52,7 +52,10 @@ def zoom_to_motion(_: Session, project: Project) -> None:
 @named_action(_("Fit selection"), "F")
 @with_project
 def zoom_to_selection(session: Session, project: Project) -> None:
-    """Show the selected handles with a margin, or the whole layer."""
+    """Show the selected handles with a margin, or the whole layer; in the graph, the keys."""
+    if project.graph.is_open and session.display.is_timeline_focused:
+        project.graph.ask_fit()
+        return
     shown = project.layer_runtime.shown
     if shown is None:
         return

@@ -133,4 +133,4 @@ def _transferred_key(
         if other in ids:
             partner = names.get(mirrored_name(ids[other], document.pairs) or "", other)
             value = replace(value, **{each.name: partner}) if len(kind.fields) > 1 else partner
-    return replace(key, value=value)
+    return key if value == key.value else replace(key.without_velocity(), value=value)

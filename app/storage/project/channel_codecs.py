@@ -1,6 +1,7 @@
 """Keys of channels as JSON: one codec for each kind, generated from the kind's fields."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from operator import attrgetter
 from typing import Any
 
@@ -14,7 +15,7 @@ from app.document import (
     Quantity,
 )
 from app.errors import LissomError
-from app.storage.json_values import as_list, as_object, as_text, as_whole
+from app.storage.json_values import as_list, as_number, as_object, as_point, as_text, as_whole
 from app.storage.project import codecs
 from app.storage.project.codecs import MISSING, Codec, Field, list_of, located, optional, record
 from app.texts import N_, _
@@ -33,13 +34,31 @@ IN_FILES: Mapping[Quantity, Codec] = dict.fromkeys(Quantity, codecs.NUMBER) | {
 }
 
 
-def key_codec(kind: ChannelKind[Any], forms: Mapping[Quantity, Codec] = IN_FILES) -> Codec:
-    """Return the codec of a kind's keys: frame, easing, tangent mode, and the value's fields."""
+# Of a number, or of a point, per frame.
+VELOCITY = Codec(
+    codecs.VALUE.write,
+    lambda content, where: (as_point if isinstance(content, list) else as_number)(content, where),
+)
 
-    def make(frame: int, easing: Easing, tangent_mode: Any, unknown: Any, **own: Any) -> Key[Any]:
+
+def key_codec(kind: ChannelKind[Any], forms: Mapping[Quantity, Codec] = IN_FILES) -> Codec:
+    """Return the codec of a kind's keys: frame, easing, tangent, and the value's fields.
+
+    In files, keys have velocities, too.
+    """
+
+    def make(
+        frame: int,
+        easing: Easing,
+        tangent_mode: Any,
+        unknown: Any,
+        velocities: tuple[float | complex | None, ...] = (),
+        **own: Any,
+    ) -> Key[Any]:
         value = kind.make(*own.values())
         kind.check(value)
-        return kind.key(frame, value, easing=easing, tangent_mode=tangent_mode, unknown=unknown)
+        key = kind.key(frame, value, easing=easing, tangent_mode=tangent_mode, unknown=unknown)
+        return replace(key, velocities=velocities) if velocities else key
 
     return record(
         make,
@@ -55,6 +74,7 @@ def key_codec(kind: ChannelKind[Any], forms: Mapping[Quantity, Codec] = IN_FILES
             )
             for each in kind.fields
         ),
+        *([Field("velocities", list_of(optional(VELOCITY)), default=())] * (forms is IN_FILES)),
     )
 
 

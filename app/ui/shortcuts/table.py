@@ -11,7 +11,15 @@ from app.editor.actions.posing.motion_presets import (
     rigging,
 )
 from app.editor.actions.project_files import export_settings, exporting, files, recovery, saving
-from app.editor.actions.timing import channel_keys, cycles, keys, sounds, timeline_drag, tracks
+from app.editor.actions.timing import (
+    channel_keys,
+    cycles,
+    graph,
+    keys,
+    sounds,
+    timeline_drag,
+    tracks,
+)
 from app.editor.actions.tracking import recording
 from app.editor.layering import footage, layer_list, layer_posing, reloading
 from app.editor.poses import copying, library, pasting, pasting_targets
@@ -98,6 +106,7 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
         (keys.use_next_tangent_mode, *keys.EASE_KEYS),
         (cycles.create_cycle, cycles.bake_cycle, cycles.end_cycle),
         (keys.add_marker_at_playhead, channel_keys.key_camera, timeline_drag.fit_timeline),
+        (graph.toggle_graph, graph.toggle_speed),
         (preset_setup.begin_motion_setup, rigging.rig_layer),
         (sounds.ask_sound_to_add, footage.ask_footage_to_add, footage.ask_reference_to_add),
         (footage.collect_footage,),

@@ -4,7 +4,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Project, Session, do
 from app.editor.actions import playback, viewing
-from app.editor.actions.timing import keys, timeline_drag
+from app.editor.actions.timing import graph, keys, timeline_drag
 from app.editor.actions.tracking import recording
 from app.editor.actions.tracking.recording import RECORDING_SPEEDS, set_recording_speed
 from app.texts import _
@@ -127,6 +127,7 @@ def _more_items(session: Session, look: Look, project: Project) -> list[Action]:
         actions.append(do(keys.set_last_frame, last))
     actions += _speed(project) + _recording_speed(session)
     actions += draw_action_item(session, timeline_drag.fit_timeline)
+    actions += draw_action_item(session, graph.toggle_graph)
     imgui.separator()
     return actions + draw_time_items(session, look, project)
 

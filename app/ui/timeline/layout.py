@@ -49,7 +49,8 @@ class TimelineLayout:
         self.corner = imgui.get_cursor_screen_pos()
         room = imgui.get_content_region_avail()
         layers = project.document.layers
-        self.has_names = len(layers) > 1 or any(map(has_lanes, layers))
+        self.is_graph = project.graph.is_open
+        self.has_names = self.is_graph or len(layers) > 1 or any(map(has_lanes, layers))
         self.has_names |= bool(project.document.camera or project.document.sounds)
         names = min(NAMES * look.em, NAMES_SHARE * room.x) if self.has_names else 0.0
         self.size = ImVec2(room.x - names, room.y)
@@ -60,8 +61,9 @@ class TimelineLayout:
         marks = SMALL_MARKS if self.is_cramped else MARKS
         self.markers_top = self.ruler_top + RULER * look.em
         self.camera_top = self.markers_top + bool(project.document.markers) * marks * look.em
-        self.sounds_top = self.camera_top + bool(project.document.camera) * THIN * look.em
-        count = len(project.document.sounds)
+        has_camera = bool(project.document.camera) and not self.is_graph
+        self.sounds_top = self.camera_top + has_camera * THIN * look.em
+        count = 0 if self.is_graph else len(project.document.sounds)
         all_sounds = min(SOUND * look.em * count, SOUNDS_SHARE * self.size.y)
         self.track_top = self.sounds_top + all_sounds
         is_whole = self.is_cramped or project.timeline.time_range is None
@@ -184,7 +186,9 @@ class TimelineLayout:
     @property
     def is_usable(self) -> bool:
         """Whether there is room to draw anything."""
-        return self.width > 4 and self.bar_bottom - self.bar_top > 0.5 * self.look.em
+        height = self.bar_bottom - self.bar_top
+        height = self.track_bottom - self.track_top if self.is_graph else height
+        return self.width > 4 and height > (2.0 if self.is_graph else 0.5) * self.look.em
 
     def x(self, frame: float) -> float:
         """Return the x of a frame, in pixels of the window."""

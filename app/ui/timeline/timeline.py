@@ -12,6 +12,16 @@ from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import Look
 from app.ui.timeline.bar import draw_transport_bar
 from app.ui.timeline.dropping import accept_dropped_pose
+from app.ui.timeline.graph.graph import (
+    click_in_graph,
+    describe_graph_place,
+    draw_graph_plane,
+    draw_graph_points,
+    follow_graph_drag,
+    is_graph_gesture,
+)
+from app.ui.timeline.graph.plane import is_number_zoom
+from app.ui.timeline.graph.view import GraphView
 from app.ui.timeline.keys import draw_keys
 from app.ui.timeline.layout import THIN, TimelineLayout, format_seconds, was_dragged
 from app.ui.timeline.row import ChannelLane
@@ -43,33 +53,44 @@ def draw_timeline_panel(session: Session, look: Look, project: Project) -> list[
 
 
 def _draw_track(bands: TimelineLayout, frame: int) -> list[Action]:
+    view = GraphView(bands) if bands.is_graph else None
     actions = draw_ruler(bands, frame)
-    actions += draw_track_background(bands)
-    actions += draw_layer_rows(bands, frame)
-    actions += draw_sound_lanes(bands)
-    actions += _navigate(bands)
-    actions += draw_pose_segments(bands)
-    actions += draw_cycle_bars(bands)
+    if view is None:
+        actions += draw_track_background(bands)
+        actions += draw_layer_rows(bands, frame)
+        actions += draw_sound_lanes(bands)
+    else:
+        actions += draw_graph_plane(view, frame)
+    actions += _navigate(bands, view)
+    if view is None:
+        actions += draw_pose_segments(bands)
+        actions += draw_cycle_bars(bands)
     actions += draw_range_edges(bands)
     actions += draw_markers(bands)
     actions += draw_playhead(bands, frame)
-    actions += draw_keys(bands)
-    actions += draw_lane_keys(bands)
-    draw_key_box(bands)
+    if view is None:
+        actions += draw_keys(bands)
+        actions += draw_lane_keys(bands)
+        draw_key_box(bands)
+        actions += accept_dropped_pose(bands)
+        actions += _follow_active(bands)
+    else:
+        actions += draw_graph_points(view)
     actions += draw_overview(bands, frame)
-    actions += _go_on(bands)
-    actions += accept_dropped_pose(bands)
-    actions += _follow(bands, frame) + _follow_active(bands)
+    actions += _go_on(bands, view)
+    actions += _follow(bands, frame)
     if imgui.is_window_hovered() or bands.project.timeline.gesture is not None:
-        actions.append(do(tool_pointer.show_hint, _hint(bands)))
+        actions.append(do(tool_pointer.show_hint, _hint(bands, view)))
     imgui.set_cursor_screen_pos(bands.corner)
     imgui.dummy(ImVec2(0, 0))
     return actions
 
 
-def _navigate(bands: TimelineLayout) -> list[Action]:
+def _navigate(bands: TimelineLayout, view: GraphView | None) -> list[Action]:
     """Scroll with the wheel or the middle button. Zoom at the pointer with Ctrl and the wheel."""
     io = imgui.get_io()
+    if view is not None and is_number_zoom(view) and not io.key_ctrl and not imgui.is_mouse_down(2):
+        return []
     if not imgui.is_window_hovered(imgui.HoveredFlags_.allow_when_blocked_by_active_item):
         return []
     em, frames = bands.look.em, bands.project.document.frames
@@ -90,7 +111,7 @@ def _navigate(bands: TimelineLayout) -> list[Action]:
     return [do(timeline_drag.set_time_range, strip.kept_near(frames, bands.width))]
 
 
-def _go_on(bands: TimelineLayout) -> list[Action]:
+def _go_on(bands: TimelineLayout, view: GraphView | None) -> list[Action]:
     """Continue the active gesture at the pointer. End it when the button is released."""
     timeline = bands.project.timeline
     gesture = timeline.gesture
@@ -100,15 +121,16 @@ def _go_on(bands: TimelineLayout) -> list[Action]:
         return [do(timeline_drag.cancel_timeline_drag)]
     # A press without a drag is a click. Only the playhead moves at once.
     goes_on = isinstance(gesture, ScrubDrag) or was_dragged()
-    moves = (
-        [do(timeline_drag.move_timeline_drag, bands.pointed, bands.pointed_channel)]
-        if goes_on
-        else []
-    )
+    moves: list[Action] = []
+    if goes_on and view is not None and is_graph_gesture(gesture):
+        moves = follow_graph_drag(view)
+    elif goes_on:
+        moves = [do(timeline_drag.move_timeline_drag, bands.pointed, bands.pointed_channel)]
     if imgui.is_mouse_down(imgui.MouseButton_.left):
         return [*moves, *_scroll_beyond_edges(bands)] if goes_on else []
     if not was_dragged():
-        moves += _click(bands, gesture)
+        is_own = view is not None and is_graph_gesture(gesture)
+        moves += click_in_graph(view, gesture) if view and is_own else _click(bands, gesture)
     return [*moves, do(timeline_drag.end_timeline_drag)]
 
 
@@ -176,7 +198,7 @@ def _follow_active(bands: TimelineLayout) -> list[Action]:
     return [do(timeline_drag.scroll_rows, scrolled + by / em)]
 
 
-def _hint(bands: TimelineLayout) -> str:
+def _hint(bands: TimelineLayout, view: GraphView | None) -> str:
     gesture = bands.project.timeline.gesture
     if isinstance(gesture, KeyDrag):
         text = (
@@ -196,6 +218,8 @@ def _hint(bands: TimelineLayout) -> str:
         return text.format(count=gesture.by, time=time)
     if gesture is not None:
         return _("Esc cancels") if isinstance(gesture, TimeDrag) else ""
+    if view is not None and (imgui.get_mouse_pos().y >= bands.track_top):
+        return describe_graph_place(view)
     return _hint_of_place(bands)
 
 

@@ -9,19 +9,11 @@ from imgui_bundle import imgui
 from app.document import Channel, Key, Quantity, ValueField, channel_commands
 from app.editor import Action, do
 from app.editor.actions import editing
-from app.texts import N_, _
+from app.texts import _
 from app.ui.style.sliders import number_field
 from app.ui.style.theme import Look
 
 FIELD = 4.5  # em: width and position of the fields
-NAMES = {
-    "zoom": N_("Zoom"),
-    "turn": N_("Turn"),
-    "opacity": N_("Opacity"),
-    "depth": N_("Depth"),
-    "start": N_("Starts at"),
-    "speed": N_("Speed"),
-}
 # Unit of the number that a person types, relative to the stored number, and its form.
 UNITS = {
     Quantity.NUMBER: (1.0, "%.4g"),
@@ -58,7 +50,7 @@ def _draw_number(
     """Draw a field. Return the number, in stored units, when a different one was entered."""
     unit, form = UNITS[field.quantity]
     imgui.align_text_to_frame_padding()
-    imgui.text_unformatted(_(NAMES.get(field.name, field.name)))
+    imgui.text_unformatted(_(field.label))
     imgui.same_line(FIELD * look.em)
     imgui.set_next_item_width(FIELD * look.em)
     value = channel.kind.field_of(key.value, field.name)

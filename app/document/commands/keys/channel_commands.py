@@ -45,18 +45,34 @@ def set_key(document: Document, channel: Channel[Any], frame: int, value: Any) -
     if old is None:
         new = kind.key(at, value)
         return put_keys(document, channel, retime.with_inserted_key(keys, new))
-    changed = {at: replace(old, value=value)}
-    cycle = repeating_cycle(kind, keys, cycles_of(document, channel))
-    last = keys[-1]
-    if cycle is not None and old is keys[0] and last.frame == at + cycle.period:
-        moved = _components(channel, changed[at]), _components(channel, old)
+    return put_keys(
+        document, channel, with_changed_keys(document, channel, {at: replace(old, value=value)})
+    )
+
+
+def with_changed_keys(
+    document: Document, channel: Channel[Any], changed: Mapping[int, Any]
+) -> KeyRow:
+    """Return the keys of a channel, of which some have other values or tangents.
+
+    If the first key begins a cycle that ends with the same state, the key at the end changes with
+    it, and full turns between them stay.
+    """
+    keys, kind = _row(document, channel), channel.kind
+    cycle = repeating_cycle(kind, keys, cycles_of(document, channel)) if kind.components else None
+    first, last = keys[0], keys[-1]
+    is_alone = first.frame in changed and last.frame not in changed
+    if cycle is not None and is_alone and last.frame == first.frame + cycle.period:
+        begun = changed[first.frame]
+        moved = _components(channel, begun), _components(channel, first)
         ends = _components(channel, last)
         values = [
             new + each - before if component.period else new
             for component, new, before, each in zip(kind.components, *moved, ends, strict=True)
         ]
-        changed[last.frame] = replace(last, value=kind.join(*values))
-    return put_keys(document, channel, retime.with_replaced_keys(keys, changed))
+        end = replace(last, value=kind.join(*values), velocities=begun.velocities)
+        changed = {**changed, last.frame: end}
+    return retime.with_replaced_keys(keys, changed)
 
 
 def _components(channel: Channel[Any], key: Key[Any]) -> list[Any]:

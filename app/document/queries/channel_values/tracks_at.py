@@ -71,7 +71,7 @@ def velocity_at(track: Track, clip: Clip, frame: float) -> complex | None:
     share = (time - one.frame) / length
     change = other.place - one.place
     leaving, reaching = segment_slopes(
-        _key_sequence(track, clip, PLACE), _tangent_segment(keys, index), PLACE
+        track_sequence(track, clip, PLACE), _tangent_segment(keys, index), PLACE
     )
     rest = 1.0 - share
     slope = 6.0 * share * rest * change
@@ -112,9 +112,10 @@ def _segment_index(track: Track, time: float) -> int:
     return bisect_right(track.keys, time, key=lambda key: key.frame) - 1
 
 
-def _key_sequence(
+def track_sequence(
     track: Track, clip: Clip, moved: KeyedProperty[TrackKey, Value]
 ) -> KeySequence[TrackKey]:
+    """Return the key sequence by which a track's position or rotation is interpolated."""
     keys = track.keys
     cycle = track_cycle(track, clip)
     period = cycle.period if cycle else clip.period if clip.loop else 0
@@ -134,7 +135,7 @@ def _value(track: Track, clip: Clip, time: float, moved: KeyedProperty[TrackKey,
         return moved.value_of(keys[index])
     leg = _tangent_segment(keys, index)
     share = (time - keys[index].frame) / leg.frames
-    return sample_segment(_key_sequence(track, clip, moved), leg, share, moved)
+    return sample_segment(track_sequence(track, clip, moved), leg, share, moved)
 
 
 def spring_root(layer: Layer, spring: Spring) -> int | None:

@@ -176,13 +176,31 @@ def interpolated_value(
     """Return the interpolated value at a frame, constant outside the keys; None without keys."""
     if not keys:
         return None
-    cycle = repeating_cycle(kind, keys, cycles)
-    frames, period = timeline.frames, timeline.frames.last - timeline.frames.first
+    cycle, frames = repeating_cycle(kind, keys, cycles), timeline.frames
     frame = frames.wrap(frame) if timeline.loop else frame
     if cycle is not None:
-        frame, period = cycle.clamped_source_frame(frame, frames.last), cycle.period
-    period = period if timeline.loop or cycle is not None else 0
+        frame = cycle.clamped_source_frame(frame, frames.last)
+    period = _repeat_period(timeline, cycle)
     return kind.join(*(_component_at(keys, each, frame, period) for each in kind.components))
+
+
+def channel_sequence(
+    timeline: Timeline,
+    kind: ChannelKind[V],
+    keys: tuple[Key[V], ...],
+    component: KeyedProperty[Key[V], Any],
+    cycles: tuple[Cycle, ...] = (),
+) -> KeySequence[Key[V]]:
+    """Return the key sequence by which `interpolated_value` interpolates a component."""
+    cycle = repeating_cycle(kind, keys, cycles)
+    return _key_sequence(keys, component, _repeat_period(timeline, cycle))
+
+
+def _repeat_period(timeline: Timeline, cycle: Cycle | None) -> int:
+    """Return the frames after which keys repeat, in a cycle or in a loop; 0 if they do not."""
+    if cycle is not None:
+        return cycle.period
+    return timeline.frames.last - timeline.frames.first if timeline.loop else 0
 
 
 def _component_at(

@@ -29,6 +29,9 @@ from app.editor.parts.timeline.gestures import (
     EdgeDrag,
     KeyBox,
     KeyDrag,
+    PointBox,
+    PointDrag,
+    PointScale,
     ScrubDrag,
     SoundDrag,
     TimeDrag,
@@ -50,8 +53,11 @@ def set_time_range(_: Session, project: Project, strip: TimeRangeView | None) ->
 @named_action(
     _("Fit timeline"), "Ctrl+Home", icon="ARROWS_LEFT_RIGHT_TO_LINE", hint=_("Show all frames")
 )
-def fit_timeline(session: Session) -> None:
+@with_project
+def fit_timeline(session: Session, project: Project) -> None:
+    """Show all frames; the graph shows all numbers, too."""
     set_time_range(session, None)
+    project.graph.show_ranges(None)
 
 
 @with_project
@@ -110,8 +116,10 @@ def cancel_timeline_drag(session: Session, project: Project) -> None:
         editing.select_channel_keys(session, gesture.keeps)
     elif isinstance(gesture, TimeDrag) and project.history.is_open(gesture.gesture):
         editing.cancel_change(session)
-        if isinstance(gesture, KeyDrag):
+        if isinstance(gesture, (KeyDrag, PointScale)):
             editing.select_channel_keys(session, gesture.keys)
+    if isinstance(gesture, (PointBox, PointDrag, PointScale)):
+        project.graph.select_points(gesture.points)
     end_timeline_drag(session)
 
 

@@ -1,9 +1,10 @@
 """Drags of the pointer in the timeline."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
-from app.document import Channel, KeysByChannel
+from app.document import Channel, ChannelCurve, KeysByChannel, Side
 
 Edge = Literal["preview start", "preview range", "preview end", "animation end"]
 
@@ -26,6 +27,55 @@ class KeyDrag(TimeDrag):
     mark: KeysByChannel  # keys that the pressed mark stands for
     copies: bool
     by: int = 0  # offset in frames
+
+
+class GraphPlace(NamedTuple):
+    """A place of the pointer in the graph."""
+
+    frame: float
+    numbers: Mapping[str, float]  # by unit
+    axis: Literal["time", "value"] | None = None  # the only one that a drag changes
+
+
+@dataclass(frozen=True, slots=True)
+class CurvePoint:
+    """A key in one of the curves of its channel."""
+
+    curve: ChannelCurve
+    frame: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PointDrag(KeyDrag):
+    """Drag of points of curves in time and value."""
+
+    points: frozenset[CurvePoint]  # before the drag
+    numbers: Mapping[str, float]  # at the press, by unit
+    is_speed: bool  # whether the numbers are velocities
+    point: CurvePoint  # pressed
+    was_chosen: bool  # whether the pressed point was selected before
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PointScale(TimeDrag):
+    """Drag of a grip of the box around selected points: it scales their time or value."""
+
+    keys: KeysByChannel  # before the drag
+    points: frozenset[CurvePoint]
+    numbers: Mapping[str, float]  # at the press, by unit
+    fixed_frame: int | None  # None if the time stays
+    fixed_numbers: Mapping[str, float]  # empty if the values stay
+    # From what is fixed to the dragged edge: frames, and numbers by unit.
+    length: float
+    heights: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TangentDrag(TimeDrag):
+    """Drag of a handle of a key's tangent."""
+
+    point: CurvePoint
+    side: Side
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -62,6 +112,14 @@ class KeyBox:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PointBox(KeyBox):
+    """A box of time and value that selects points of curves."""
+
+    numbers: Mapping[str, float]  # at the press, by unit
+    points: frozenset[CurvePoint]  # other selected points
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ScrubDrag:
     """Drag of the playhead, which is `offset` frames later than the pointer."""
 
@@ -69,3 +127,4 @@ class ScrubDrag:
 
 
 TimeGesture = TimeDrag | KeyBox | ScrubDrag
+GraphGesture = PointDrag | PointScale | TangentDrag | PointBox

@@ -4,10 +4,13 @@ from app.editor import Project
 from app.ui.timeline.layout import EVEN, MARKS, SOUND, THIN
 
 LEAST = 8.0  # em: with the row of a single layer
+GRAPH = 22.0  # em: with the graph in place of the rows
 
 
 def wanted_height(project: Project) -> float:
     """Return the height in em in which all rows, lanes and bands can be seen."""
+    if project.graph.is_open:
+        return GRAPH
     document, opened = project.document, project.timeline.expanded_layers
     rows = [EVEN if row.layer else THIN for row in project.tree]
     layers = (row.layer for row in project.tree if row.layer and row.layer.id in opened)

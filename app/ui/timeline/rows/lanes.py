@@ -1,14 +1,17 @@
 """Lanes: the keys of channels other than poses, with their names."""
 
 from collections.abc import Sequence
+from typing import Any
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import (
     VOLUME,
     BaseKey,
+    Channel,
     Layer,
     TangentMode,
+    Track,
     TrackKey,
     describe_channel,
     keys_in,
@@ -82,11 +85,10 @@ def _id(lane: ChannelLane) -> str:
     return f"lane {channel.kind.name} {channel.layer} {channel.part}"
 
 
-def name_lane(layer: Layer | None, lane: ChannelLane) -> str:
-    """Return the name of a lane below its layer: of its handles, or of its kind."""
-    channel = lane.channel
-    if layer is not None and lane.track is not None:
-        return format_track_name(layer, lane.track)
+def name_channel(layer: Layer | None, channel: Channel[Any], track: Track | None) -> str:
+    """Return the name of a channel below its layer: of its handles, or of its kind."""
+    if layer is not None and track is not None:
+        return format_track_name(layer, track)
     name = str(channel.part) if channel.kind.of_sliders else _(channel.kind.label)
     if layer is None or not isinstance(channel.part, int):
         return name if channel.part is None else str(channel.part)
@@ -117,7 +119,7 @@ def _draw_name(bands: TimelineLayout, lane: ChannelLane) -> list[Action]:
     room = high.x - low.x - (2.0 if has_button else 0.0) * em
     with push_text_size(SMALL):
         top = lane.middle - imgui.get_text_line_height() / 2
-        text = shorten_text(name_lane(layer, lane), room - 3.4 * em)
+        text = shorten_text(name_channel(layer, lane.channel, track), room - 3.4 * em)
         place = ImVec2(low.x + INDENT * em, top)
         draw_list.add_text(place, colour_u32(palette.dim), _icon(lane))
         colour = colour_u32(palette.text if is_on else palette.dim)
@@ -208,7 +210,7 @@ def draw_lane_keys(bands: TimelineLayout) -> list[Action]:
             bands.push_track_clip()
         imgui.push_id(_id(lane))
         keys = keys_in(bands.project.document, lane.channel)
-        for index in _in_view(bands, lane, keys):
+        for index in find_visible_keys(bands, lane.track, keys):
             actions += _key(bands, lane, keys[index])
         imgui.pop_id()
         if lane.layer is not None:
@@ -216,11 +218,13 @@ def draw_lane_keys(bands: TimelineLayout) -> list[Action]:
     return actions
 
 
-def _in_view(bands: TimelineLayout, lane: ChannelLane, keys: tuple[BaseKey, ...]) -> list[int]:
+def find_visible_keys(
+    bands: TimelineLayout, track: Track | None, keys: tuple[BaseKey, ...]
+) -> list[int]:
     """Return the indices of the visible keys. In a loop, late keys of a track wrap around."""
-    if lane.track is None:
+    if track is None:
         return list(bands.in_view(keys))
-    document, delay = bands.project.document, lane.track.delay
+    document, delay = bands.project.document, track.delay
     period = document.frames.last - document.frames.first
     shifts = {delay, delay - period * document.loop}
     return sorted({index for late in shifts for index in bands.in_view(keys, late=late)})

@@ -68,7 +68,9 @@ class Docking:
         """Show the tabs that are switched on. Fit sizes to the window and the interface scale."""
         layout = hello_imgui.get_runner_params().docking_params
         project, display = session.project, session.display
-        opened = None if project is None else project.timeline.expanded_layers
+        opened = (
+            None if project is None else (project.timeline.expanded_layers, project.graph.is_open)
+        )
         revision = 0 if project is None else project.history.revision
         shown = (project, revision, opened, display.is_panel_folded, display.is_measuring)
         # Nothing moves under the pointer during a drag or a recording.
@@ -89,7 +91,12 @@ class Docking:
         if not self._frames_to_fit:
             return
         self._frames_to_fit -= 1
-        sizes = usual_sizes(room, scale * FONT_SIZE, self._height)
+        sizes = usual_sizes(
+            room,
+            scale * FONT_SIZE,
+            self._height,
+            is_graph=project is not None and project.graph.is_open,
+        )
         layout.docking_splits = splits(room, sizes, scale * FONT_SIZE)
         preferences = session.settings.preferences
         if layout.layout_reset:

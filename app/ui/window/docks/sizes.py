@@ -9,16 +9,20 @@ from app.ui.panel import Panel
 SIDE, LEAST_SIDE = 20.0, 17.4  # em: largest and smallest width of the panel by itself
 SHARE = 0.235  # of the window's width, for the panel by itself
 BOTTOM = 8.0  # em: the timeline of one layer
-GROWN = 0.34  # share of the window's height up to which the timeline grows by itself
+# Shares of the window's height up to which the timeline grows by itself: with rows, with curves.
+GROWN, GROWN_GRAPH = 0.34, 0.44
 BARS = (2.7, 4.4)  # em: width and height of the bars around the docks
 MOST = (0.52, 0.45)  # largest share of the window's width and height for panel and timeline
 SIDE_DOCK, BOTTOM_DOCK = "side", "bottom"
 
 
-def usual_sizes(room: ImVec2, em: float, height: float) -> dict[int | str, float]:
+def usual_sizes(
+    room: ImVec2, em: float, height: float, *, is_graph: bool
+) -> dict[int | str, float]:
     """Return the panel's width and the timeline's height in pixels, if no person sets them."""
+    grown = GROWN_GRAPH if is_graph else GROWN
     side = min(max(SHARE * room.x, LEAST_SIDE * em), SIDE * em, MOST[0] * room.x)
-    bottom = min(max(height, BOTTOM) * em, max(GROWN * room.y, BOTTOM * em))
+    bottom = min(max(height, BOTTOM) * em, max(grown * room.y, BOTTOM * em))
     return {SIDE_DOCK: side, BOTTOM_DOCK: bottom}
 
 
