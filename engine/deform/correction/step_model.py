@@ -70,9 +70,7 @@ class StepModel:
         if walls is None:
             self._slopes, self._down = rows.jacobian, x
         else:
-            metric = walls.hessian_rows.T @ walls.hessian_rows
-            metric[np.diag_indices(len(x))] += 1.0
-            self._root = np.asarray(np.linalg.cholesky(metric), dtype=np.float64)
+            self._root = metric_root(walls.hessian_rows)
             self._slopes = self._halved(rows.jacobian.T).T
             self._down = self._halved(x + walls.gradient)
         self._products = self._slopes @ self._slopes.T
@@ -165,6 +163,16 @@ class StepModel:
         padded = np.append(right, np.zeros(more))
         found = scipy.linalg.lu_solve(self._factors, padded, check_finite=False)
         return found[:count], complex(*found[count:]) if more else 0j
+
+
+def metric_root(rows: Floats) -> Floats:
+    """Return the lower triangle L of 1 + rowsᵀ rows = L Lᵀ, for rows (w, n)."""
+    metric, unit = rows.T @ rows, np.eye(rows.shape[1])
+    try:
+        return np.asarray(np.linalg.cholesky(metric + unit), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        # Close to a limit, the 1 is lost in the products, but not in the rows.
+        return np.asarray(np.linalg.qr(np.vstack([rows, unit]), mode="r").T, dtype=np.float64)
 
 
 def pulls_against(lacks: Floats, compliances: Floats, yields: Floats) -> Floats:

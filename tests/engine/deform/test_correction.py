@@ -22,6 +22,7 @@ from engine.deform.correction.solver import (
     PointSolution,
     solve_correction,
 )
+from engine.deform.correction.step_model import metric_root
 from engine.errors import EngineError
 from engine.maps import Boundary, Bounds
 
@@ -417,3 +418,15 @@ def test_targets_are_refused_that_no_point_can_have(changes):
     given = {"offsets": np.zeros(6, complex), "weights": np.ones(6), "is_anchored": True} | changes
     with pytest.raises(EngineError):
         solve_correction(known, bent(known.paths.nodes), PointTargets(**given))
+
+
+@pytest.mark.parametrize("size", [1.0, 1e11])
+def test_steps_beside_a_limit_do_not_depend_on_how_near_it_is(size):
+    way = RNG.normal(size=60)
+    way /= np.linalg.norm(way)
+    root = metric_root(size * np.outer([1.0, 0.7, -0.4], way))
+    free = RNG.normal(size=60)
+    free -= way * (way @ free)
+    step = np.linalg.solve(root.T, np.linalg.solve(root, free))
+    assert_allclose(step, free, rtol=0, atol=1e-3)
+    assert abs(way @ np.linalg.solve(root.T, np.linalg.solve(root, way))) <= 1.0
