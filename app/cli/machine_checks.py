@@ -106,7 +106,7 @@ def _sound() -> CheckResult:
     try:
         device = open_device()
     except LissomError as error:
-        text = _("{problem}; exports carry sounds all the same").format(problem=message_of(error))
+        text = _("{problem}; exports still contain sounds").format(problem=message_of(error))
         return CheckResult(name, text, works=False)
     return CheckResult(name, _("{rate:,} samples a second").format(rate=device.rate))
 

@@ -35,11 +35,11 @@ def without_transparency(rgba: Bytes) -> tuple[Booleans, tuple[str, ...]]:
     if np.count_nonzero(present) <= FAINT_GROWTH * np.count_nonzero(visible):
         return present, ()
     notice = ngettext(
-        "{count:,} nearly invisible pixel (alpha below {alpha}) left out",
-        "{count:,} nearly invisible pixels (alpha below {alpha}) left out",
+        "{count:,} faint pixel left out",
+        "{count:,} faint pixels left out",
         faint,
     )
-    return visible, (notice.format(count=faint, alpha=VISIBLE_ALPHA),)
+    return visible, (notice.format(count=faint),)
 
 
 def _seen_parts(rgba: Bytes) -> Booleans:

@@ -43,7 +43,7 @@ def why_not_bend_as_one(project: Project, identities: Iterable[int]) -> str | No
         document.is_deform_group(each) or document.layer(each).deform_group is not None
         for each in chosen
     ):
-        return _("One of them is in a deform group already.")
+        return _("One of them is already in a deform group.")
     return None
 
 

@@ -50,7 +50,7 @@ def _close_seam(session: Session, project: Project, identity: int) -> None:
     def work() -> tuple[KeyResolver, Picture]:
         grown = extend_under(*placed)
         if grown is None:
-            text = _("{behind} and {front} do not meet, or {behind} reaches under {front} already")
+            text = _("{behind} and {front} do not meet, or {behind} already reaches under {front}")
             raise LissomError(text.format(behind=behind.name, front=front.name))
         data = encode_png(Image.fromarray(grown.rgba))
         picture = Picture(rgba=grown.rgba)

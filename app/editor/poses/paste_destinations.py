@@ -124,8 +124,8 @@ def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMod
         each.is_direct(way) for each, reason in zip(found, reasons, strict=True) if not reason
     ):
         return _(
-            "Nothing was swapped: no copied layer or handle has a partner. Set the pairs of "
-            "names in the Poses tab."
+            "Nothing was swapped: no copied layer or handle has a partner. "
+            "Set the pairs of names in the Animate tab."
         )
     return None
 

@@ -149,7 +149,7 @@ def _require_members(document: Document, members: Sequence[Layer]) -> None:
         if each.deform_group is not None or document.is_deform_group(each.id)
     ]
     if bent:
-        text = _("{layers} are in a deform group already; part it first")
+        text = _("{layers} are already in a deform group; part it first")
         raise LissomError(text.format(layers=join_names(bent)))
 
 

@@ -20,7 +20,7 @@ from app.storage.project import codecs
 from app.storage.project.codecs import MISSING, Codec, Field, list_of, located, optional, record
 from app.texts import N_, _
 
-DUPLICATE_CHANNEL = N_("{where}: the layer has this channel already; leave one of them out")
+DUPLICATE_CHANNEL = N_("{where}: the layer already has this channel; leave one of them out")
 EASING = Codec(Easing.to_json, lambda content, where: located(where, Easing.parse, content))
 # Angles are in radians, and layers are ids.
 IN_FILES: Mapping[Quantity, Codec] = dict.fromkeys(Quantity, codecs.NUMBER) | {

@@ -154,8 +154,8 @@ def describe_pose_limit(session: Session) -> str:
     if not others:
         return _("At its limit · {name} is {lag:.0f} px short").format(name=name, lag=lag)
     return ngettext(
-        "At its limit · {name} is {lag:.0f} px short, {count} more too",
-        "At its limit · {name} is {lag:.0f} px short, {count} more too",
+        "At its limit · {name} is {lag:.0f} px short, and {count} more",
+        "At its limit · {name} is {lag:.0f} px short, and {count} more",
         others,
     ).format(name=name, lag=lag, count=others)
 

@@ -109,7 +109,7 @@ def _follow(dialog: FileDialog, chosen: Path) -> Action:
     # The system has asked only about the name without its suffix.
     question = Question(
         title=REPLACE,
-        text=_("{name} is there already.").format(name=path.name),
+        text=_("{name} already exists.").format(name=path.name),
         answers=((_("Replace"), do(choose_file, dialog, path)),),
     )
     return do(show_dialog, question)

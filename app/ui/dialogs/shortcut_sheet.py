@@ -147,7 +147,7 @@ def _draw_rows(sheet: ShortcutSheet, look: Look) -> list[Action]:
         ]
     rows = {menu: own for menu, own in rows.items() if own}
     if not rows:
-        imgui.text_disabled(_("No action is called so."))
+        imgui.text_disabled(_("No action has this name."))
         return []
     actions: list[Action] = []
     style = imgui.get_style()

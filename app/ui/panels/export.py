@@ -187,7 +187,7 @@ def _size(
         icons.ICON_FA_ARROW_ROTATE_LEFT,
         "own size",
         _("Reset to the size of the drawing"),
-        reason=_("It is the size of the drawing already.") if settings.size is None else None,
+        reason=_("It already has the size of the drawing.") if settings.size is None else None,
     ):
         return replace(settings, size=None), actions
     if entered is None or entered.size == view.size:
@@ -209,7 +209,7 @@ def _canvas(look: Look, project: Project) -> list[Action]:
     imgui.same_line(0, gap)
     hint = _("Reset to the size of the backmost picture")
     is_own = document.canvas != document.layers[0].picture.size
-    reason = None if is_own else _("It is the size of that picture already.")
+    reason = None if is_own else _("It already has the size of that picture.")
     if icon_button(look, icons.ICON_FA_ARROW_ROTATE_LEFT, "canvas size", hint, reason=reason):
         return [
             do(editing.edit_document, scene_commands.set_canvas(document.layers[0].picture.size))

@@ -262,7 +262,7 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     if menu_entry(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, _("click"))):
         actions.append(do(toggle_anchor_at_handle, identity))
     is_turned = target is not None and target.rotation is not None
-    reason = None if is_turned else _("The handle turns freely already.")
+    reason = None if is_turned else _("The handle already turns freely.")
     if menu_entry(_("Turn freely"), icons.ICON_FA_ROTATE, reason=reason):
         actions.append(do(free_rotation, identity))
     imgui.end_popup()

@@ -48,7 +48,7 @@ def test_a_wide_nearly_invisible_haze_is_left_out() -> None:
     rgba[10:90, 10:90, 3] = np.maximum(rgba[10:90, 10:90, 3], 3)
     subject = subject_mask(rgba)
     assert_array_equal(subject.mask, rgba[..., 3] >= 8)
-    assert "nearly invisible" in subject.notices[0]
+    assert "faint pixel" in subject.notices[0]
 
 
 def test_a_narrow_nearly_invisible_rim_is_kept() -> None:

@@ -202,7 +202,7 @@ def test_greyed_buttons_of_panels_show_their_reasons(window, loose, monkeypatch)
     window.frames(3)
     assert loose is window.session.project
     assert set(shown) >= {
-        *("A scene needs at least one layer.", "The layer is in front of all others already."),
+        *("A scene needs at least one layer.", "The layer is already in front of all others."),
         *("There are no strokes.", "Brush over a part or draw a bone first."),
         "Change a setting above first.",
     }

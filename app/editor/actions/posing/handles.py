@@ -70,7 +70,7 @@ def suggest_handles(session: Session, project: Project) -> None:
     taken = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
     free = [handle for handle in suggested if not (np.abs(taken - handle.place) < near).any()]
     if not free:
-        session.notices.show(_("All suggested places have handles already."))
+        session.notices.show(_("All suggested places already have handles."))
         return
     names = {handle.name for handle in layer.handles}
     handles = [

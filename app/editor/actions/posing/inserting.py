@@ -14,7 +14,7 @@ from app.editor.work.jobs import JobKind
 from app.solving import Rig, fit_shown_pose
 from app.texts import N_, _
 
-IS_KEYED = N_("Frame {frame} has a key already. Drag a handle to change it.")
+IS_KEYED = N_("Frame {frame} already has a key. Drag a handle to change it.")
 INSERTING = JobKind(_("Inserting a key"), _("The key could not be inserted"), "hand")
 
 

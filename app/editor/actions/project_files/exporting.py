@@ -66,7 +66,7 @@ def start_export(session: Session, project: Project, out: Path) -> None:
             title=ngettext("Replace the file?", "Replace the {count} files?", count).format(
                 count=count
             ),
-            text=_("{folder} holds {files} already.").format(folder=folder, files=listed),
+            text=_("{folder} already contains {files}.").format(folder=folder, files=listed),
             answers=((_("Replace"), do(replace_export_files, out)),),
         )
         return

@@ -283,8 +283,8 @@ def _next_step(path: Path, runtimes: Sequence[LayerRuntime]) -> NextStep | None:
     if runtimes[0].is_opaque and cut.is_all:
         return NextStep(
             text=_(
-                "The whole picture is the drawing. Brush the rest away, or pick the "
-                "background's colour in the Cut-out tab."
+                "The whole picture is the drawing. Choose Cut out, and brush the rest away or pick "
+                "the background's colour."
             ),
             label=_("Cut out"),
             action=do(cut_out_editing.toggle_cut_brush),

@@ -246,7 +246,7 @@ def set_last_frame(session: Session, project: Project, last: int) -> None:
     _("Play all frames"),
     "Alt+P",
     why_disabled=unless(
-        lambda _, project: project.document.preview, _("All frames are played already.")
+        lambda _, project: project.document.preview, _("All frames are already played.")
     ),
 )
 def clear_preview_range(session: Session) -> None:
@@ -278,7 +278,7 @@ def _set_preview(session: Session, project: Project, first: int, last: int) -> N
 def add_marker(session: Session, project: Project, frame: int) -> None:
     """Add a marker at a frame, unless it has one."""
     if any(marker.frame == frame for marker in project.document.markers):
-        text = _("Frame {frame} has a marker already. Double-click the marker to name it.")
+        text = _("Frame {frame} already has a marker. Double-click the marker to name it.")
         session.notices.show(text.format(frame=frame))
     else:
         editing.edit_document(session, scene_commands.add_marker(frame))

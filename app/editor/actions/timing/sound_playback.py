@@ -13,7 +13,7 @@ from app.sound import PlayedRange, SoundMix, stream_part, stream_range
 from app.texts import _, message_of
 
 SHORTEST = 0.06  # seconds of a frame that are heard while it is scrubbed
-UNHEARD = _("Sounds are not heard here: {error}. Exports carry them all the same.")
+UNHEARD = _("Sounds cannot be heard here: {error}. Exports still contain them.")
 
 
 @with_project

@@ -71,7 +71,7 @@ def _replace(session: Session, project: Project, name: str, inspected: Inspected
     project.measured.note_waveform(inspected)
     editing.edit_document(session, sound_commands.replace_sound_file(name, inspected.file))
     if old.data is None and old.sha256 != inspected.file.sha256:
-        text = _("{name} is not the file that was missing. The sound plays it nevertheless.")
+        text = _("{name} is not the file that was missing. The sound plays it anyway.")
         session.notices.show(text.format(name=inspected.file.name))
 
 

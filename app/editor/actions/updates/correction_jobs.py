@@ -14,8 +14,8 @@ from app.motion import CorrectedFrames, CorrectionUpdate
 from app.texts import _
 
 COMPLAINT = _("The handles cannot follow their tracks")
-CORRECTING = JobKind(_("Corrections"), COMPLAINT)
-CORRECTING_SHOWN_FRAME = JobKind(_("Frame correction"), COMPLAINT, "hand")
+CORRECTING = JobKind(_("Motion of tracks and springs"), COMPLAINT)
+CORRECTING_SHOWN_FRAME = JobKind(_("Tracks and springs of this frame"), COMPLAINT, "hand")
 # Base motions of tracks whose handles may be dragged.
 FINDING_BASE_FRAMES = JobKind(_("Places on tracks"), COMPLAINT, "hand")
 

@@ -39,7 +39,9 @@ UNMADE = _("The in-betweens of these keys cannot be made")
 GLIMPSING = JobKind(_("In-between"), UNMADE, "hand")
 SKETCHING = JobKind(_("In-betweens"), UNMADE)
 COMPARING = JobKind(_("Comparison"), _("The compared in-betweens cannot be made"))
-REFINING = JobKind(_("Finer in-betweens"), _("The in-betweens cannot be made in full detail"))
+REFINING = JobKind(
+    _("In-betweens in full detail"), _("The in-betweens cannot be made in full detail")
+)
 STREAMING = JobKind(_("Smooth playback"), _("Playback cannot be made smooth"))
 ATTACHING = JobKind(_("Joints"), _("The joints cannot be followed between the keys"))
 MOST_UNASKED = 1000  # frames whose extent is measured unasked

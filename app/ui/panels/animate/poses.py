@@ -205,7 +205,7 @@ def draw_flip(session: Session, look: Look, project: Project) -> list[Action]:
         actions.append(do(flipping.set_mirror_axis, placed))
     imgui.same_line(0, gap)
     hint = _("Put the axis in the middle of the pairs of handles, or of the shape")
-    reason = _("The axis is in the middle already.") if layer.mirror is None else None
+    reason = _("The axis is already in the middle.") if layer.mirror is None else None
     if text_button(_("Middle"), button, hint, reason=reason):
         actions.append(do(flipping.set_mirror_axis, None))
     label(look, _("Pairs"))

@@ -33,13 +33,13 @@ def draw_anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Acti
         small_text(look, text.format(x=anchor.real, y=y))
     reason = None if len(chosen) == 1 else _("Select one handle first.")
     if reason is None and chosen[0].position == layer.anchor:
-        reason = _("In-betweens turn around this handle already.")
+        reason = _("In-betweens already turn around this handle.")
     halves, actions = split_line(2), list[Action]()
     text = f"{icons.ICON_FA_ANCHOR}  {_('Follow handle')}###anchor here"
     hint, keys = _("Let in-betweens turn around this point"), format_modified(CTRL, _("click"))
     if text_button(text, next(halves), hint, keys, reason=reason):
         actions.append(do(toggle_anchor_at_handle, chosen[0].id))
-    reason = _("The anchor is automatic already.") if layer.anchor is None else None
+    reason = _("The anchor is already automatic.") if layer.anchor is None else None
     if text_button(_("Automatic anchor") + "###clear anchor", next(halves), reason=reason):
         actions.append(do(editing.edit_layer, shape_commands.set_anchor, None))
     return actions

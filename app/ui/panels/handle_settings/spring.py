@@ -63,13 +63,13 @@ NUMBERS = (
 
 def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
     spring, actions = project.layer.spring_of(handle.id), list[Action]()
-    heading(look, _("Follows"), framed=True)
+    heading(look, _("Spring"), framed=True)
     if spring is not None:
         align_right(1.15 * imgui.get_frame_height())
         if icon_button(look, icons.ICON_FA_TRASH, "delete spring", _("Delete the spring")):
             command = track_commands.remove_springs
             actions.append(do(editing.edit_layer, command, (handle.id,)))
-    label(look, _("Like"))
+    label(look, _("Preset"))
     names = [(name, PRESET_NAMES[name]) for name in SPRING_PRESETS]
     taken = option_buttons(look, "preset", names, "" if spring is None else _preset(spring))
     draw_tooltip(_("Let the handle lag and swing like one of these"))

@@ -148,7 +148,7 @@ def _switch_disabled_reason(project: Project, members: Sequence[SwitchMember]) -
     if len(members) < 2:
         return _("Select several layers or groups first.")
     is_taken = any(project.document.switch_group_of(each) is not None for each in members)
-    return _("One of them is in a switch already.") if is_taken else None
+    return _("One of them is already in a switch.") if is_taken else None
 
 
 def _kind(project: Project, layer: Layer) -> list[Action]:

@@ -73,7 +73,7 @@ def _offers(look: Look, project: Project) -> list[Action]:
             continue
         name = path.rpartition("/")[2]
         imgui.push_id(path)
-        text = _("The {count} parts of {name} look like alternatives.")
+        text = _("{name}: show one of its {count} parts at a time?")
         small_text(look, text.format(count=len(layers), name=name))
         if imgui.button(_("Create switch")):
             actions.append(do(create_switch, *layers, name=name))

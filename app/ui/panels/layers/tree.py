@@ -109,8 +109,8 @@ def _bar(look: Look, project: Project) -> list[Action]:
     replace = _("Replace the layer's picture with another file. Handles, keys and parents stay.")
     delete = ngettext("Delete the layer", "Delete the {count} selected layers", count)
     alone = None if last else _("A scene needs at least one layer.")
-    highest = None if index < last else _("The layer is in front of all others already.")
-    lowest = None if index else _("The layer is behind all others already.")
+    highest = None if index < last else _("The layer is already in front of all others.")
+    lowest = None if index else _("The layer is already behind all others.")
     group = ngettext(
         "Put the layer in a group", "Put the {count} selected layers in a group", count
     )

@@ -53,7 +53,7 @@ def draw_measure_panel(session: Session, look: Look, project: Project) -> list[A
     actions += _compare(session, look)
     heading(look, _("Over time"))
     if len(project.layer.keys) < 2:
-        small_text(look, _("Make a second key to see how the in-betweens distort."))
+        small_text(look, _("Set a second key to see how the in-betweens distort."))
     else:
         actions += draw_distortion_curves(session, look, project)
     heading(look, _("Pose"))

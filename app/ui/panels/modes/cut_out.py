@@ -222,6 +222,8 @@ def _state(look: Look, project: Project) -> list[Action]:
         is_stopped = progress_bar(resolver.progress, resolver.status_text)
         return [do(resolving.cancel_solving_keys)] if is_stopped else []
     if project.layer.is_stale and project.layer is project.layer_setup.unbuildable:
-        text = _("This cut-out leaves no shape, so the mesh did not change. Change it, or undo.")
+        text = _(
+            "This cut-out leaves no shape, so the mesh did not change. Change the cut-out, or undo."
+        )
         small_text(look, text, look.palette.warning)
     return []

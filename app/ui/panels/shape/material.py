@@ -97,10 +97,7 @@ def _brush(session: Session, look: Look, project: Project) -> list[Action]:
         actions.append(do(stiffness_editing.set_brush_softness, entered.value))
     small_text(
         look,
-        _(
-            "The brush changes the outline within its radius, and the shape behind it as deep "
-            "as a limb is thick."
-        ),
+        _("Brush along the edge: the limb changes all the way through."),
     )
     if session.tools.mode == "stiff":
         small_text(look, _describe_limits(project.layer, session.tools.strength))
