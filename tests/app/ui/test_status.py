@@ -37,7 +37,7 @@ def test_held_back_pull_appears_with_its_remedy(window, loose):
     layer = loose.layer
     lag = layer.target_errors(layer.key(24).pose)[1]
     message = describe_pose_limit(window.session)
-    assert re.fullmatch(r"At its limit · handle \d is \d+ px short(, 1 more too)?", message), (
+    assert re.fullmatch(r"At its limit · handle \d is \d+ px short(, and 1 more)?", message), (
         message
     )
     steps = loose.history.undo_label
