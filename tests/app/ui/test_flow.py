@@ -306,7 +306,7 @@ def test_inserting_a_key_where_there_is_one_says_so(window, bar):
     window.run(lambda robot: robot.key_press(int(window.Key.i)))
     assert bar.document is before
     (toast,) = window.session.notices.toasts
-    assert toast.text == "Frame 0 has a key already. Drag a handle to change it."
+    assert toast.text == "Frame 0 already has a key. Drag a handle to change it."
 
 
 def test_keys_of_the_pointer(window, bar):

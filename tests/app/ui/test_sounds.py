@@ -194,7 +194,7 @@ def test_machine_without_a_device_says_so_once_and_plays(window, spoken):
         playback.toggle_play(window.session)
         window.frames(30)
         assert now(window, spoken) >= 11
-    text = "Sounds are not heard here: there is none. Exports still contain them."
+    text = "Sounds cannot be heard here: there is none. Exports still contain them."
     assert notices(window) == [text]
 
 

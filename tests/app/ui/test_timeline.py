@@ -588,7 +588,7 @@ def test_markers_are_made_named_dragged_and_deleted(window, project, play):
     assert marks_of(project) == [(20, "Marker 1")]
     # Another one on the same frame is explained.
     play(lambda hand: hand.robot.key_press(int(window.Key.m)))
-    assert "has a marker already" in window.session.notices.toasts[-1].text
+    assert "already has a marker" in window.session.notices.toasts[-1].text
     window.session.notices.toasts = []
 
     def name(hand):
