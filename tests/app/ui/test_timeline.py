@@ -34,7 +34,7 @@ from app.editor.parts.viewport_state import fit_view_around
 from app.motion import BoundingBox
 from app.ui.bars.status import describe_motion_limit
 from app.ui.style.theme import PALETTES
-from app.ui.timeline import segments
+from app.ui.timeline.rows import segments
 from app.ui.viewport.marks import mark_all
 from engine.maps import Bounds
 

@@ -14,7 +14,7 @@ from app.ui.timeline.layout import TimelineLayout
 from app.ui.timeline.rows.lanes import find_visible_keys
 from engine.arrays import Floats
 
-STEP = 0.4  # em between two samples of a curve
+STEP = 0.5  # em between two samples of a curve
 BESIDE = 1 / 512  # frames before and after a key where a curve is sampled, too
 WHOLE = 240  # samples of all frames, which the shown numbers fit
 MOST_FITTED = 100  # keys up to which they fit exactly
@@ -166,10 +166,11 @@ class GraphView:
         seen = np.array(
             [float(display_frame(self.document, curve.channel, frame)) for frame in frames]
         )
-        times = np.unique(np.concatenate([even, seen, seen - 2 * BESIDE, seen + 2 * BESIDE]))
-        if self.is_speed:
-            # At a key itself, a speed may jump.
-            times = times[~np.isin(times, seen)]
+        times = np.union1d(even, seen)
+        if self.is_speed or curve.channel.kind.is_held:
+            # The curve jumps at keys.
+            times = np.setdiff1d(times, seen) if self.is_speed else times
+            times = np.union1d(times, np.concatenate([seen - 2 * BESIDE, seen + 2 * BESIDE]))
         return times[times >= 0.0]
 
     def _numbers(self, curve: ChannelCurve, times: Floats) -> Floats:
