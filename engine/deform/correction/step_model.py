@@ -172,7 +172,7 @@ def metric_root(rows: Floats) -> Floats:
         return np.asarray(np.linalg.cholesky(metric + unit), dtype=np.float64)
     except np.linalg.LinAlgError:
         # Close to a limit, the 1 is lost in the products, but not in the rows.
-        return np.asarray(np.linalg.qr(np.vstack([rows, unit]), mode="r").T, dtype=np.float64)
+        return np.asarray(np.linalg.qr(np.vstack([rows, unit]), mode="r"), dtype=np.float64).T
 
 
 def pulls_against(lacks: Floats, compliances: Floats, yields: Floats) -> Floats:
