@@ -163,6 +163,7 @@ class ExportFormat:
     composites: bool = True  # whether the file shows blend modes, clipping and group opacity
     largest: int | None = None  # side of a picture in pixels
     has_sound: bool = False  # whether the file carries the sounds
+    plays_on: bool = False  # whether the file says if it plays once or for ever
     is_still: bool = False  # one frame: at the playhead, or the first
     block: int = 1  # the sides of a picture are multiples of this number of pixels
     fastest: float | None = None  # pictures per second
@@ -199,6 +200,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "apng": ExportFormat(
             label=_("Animated PNG"),
             group=_("Animation"),
+            plays_on=True,
             use=_("For web pages and chats: exact colours and soft edges; large files."),
             about=_("an animation with exact colours and transparency"),
             suffixes=(".apng", ".png"),
@@ -206,6 +208,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "gif": ExportFormat(
             label=_("GIF"),
             group=_("Animation"),
+            plays_on=True,
             use=_("Plays everywhere; hard edges, 255 colours, at most 50 frames a second."),
             about=_(
                 "an animation in 255 colours a frame; each pixel is opaque or transparent, so "
@@ -218,6 +221,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "webp": ExportFormat(
             label=_("WebP"),
             group=_("Animation"),
+            plays_on=True,
             use=_(
                 "Exact colours as in Animated PNG, in a smaller file; for browsers, as few "
                 "editors read it."
@@ -283,6 +287,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "glb": ExportFormat(
             label=_("glTF model"),
             group=_("Engine and web"),
+            plays_on=True,
             use=_(
                 "For engines and Blender: a moving mesh at any rate and size, in one small file."
             ),
@@ -301,6 +306,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "html": ExportFormat(
             label=_("Web page"),
             group=_("Engine and web"),
+            plays_on=True,
             use=_("For the web: one file, sharp at any size; needs a browser with WebGL 2."),
             about=_(
                 "one page that plays the same shapes as glb with WebGL 2 and needs no other "

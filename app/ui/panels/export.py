@@ -8,6 +8,7 @@ from app.document import ExportSettings, scene_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing
 from app.editor.actions.project_files import export_settings, exporting
+from app.editor.actions.timing import keys
 from app.errors import LIBRARIES, LissomError, display_name, install_hint
 from app.export import find_shown_box, frame_view
 from app.export_formats import EXPORT_FORMATS
@@ -37,6 +38,7 @@ from app.ui.style.widgets import (
 
 BACKGROUNDS = (("transparent", _("Transparent")), ("colour", _("Colour")))
 FRAMINGS = (("fit", _("All motion")), ("canvas", _("Canvas")))
+PLAYS = (("once", _("Once")), ("for ever", _("For ever")))
 WHITE, USES = "#ffffff", 26.0  # the latter in em: width of the list of formats
 
 
@@ -50,8 +52,11 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
     box = find_shown_box(view)
     # The camera's frame is always visible.
     actions = [] if project.document.camera else [do(export_settings.preview_export_frame, box)]
-    heading(look, _("Picture"))
+    heading(look, _("Output"))
     chosen = _format(look, settings)
+    # Above the settings, so that a small window shows the button, too.
+    actions += _output(session, look, project)
+    heading(look, _("Picture"))
     if EXPORT_FORMATS[settings.format].has_frame:
         chosen = _picture(look, project, chosen)
         chosen, more = _size(session, look, chosen, view)
@@ -67,11 +72,21 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
         text = _("Frame {frame}, at the playhead, with the pose as it is shown.")
         small_text(look, text.format(frame=now))
     else:
+        if EXPORT_FORMATS[settings.format].plays_on:
+            actions += _plays(look, project)
         chosen = draw_frame_settings(look, project, chosen)
     if chosen != settings:
         actions.append(do(editing.edit_document, scene_commands.set_export(chosen)))
-    heading(look, _("Output"))
-    return actions + _output(session, look, project)
+    return actions
+
+
+def _plays(look: Look, project: Project) -> list[Action]:
+    """Draw whether the file plays once or for ever, as the timeline does."""
+    label(look, _("Plays"))
+    now = "for ever" if project.document.loop else "once"
+    chosen = option_buttons(look, "plays", PLAYS, now)
+    draw_tooltip(_("The timeline plays in the same way"), shown_keys(keys.toggle_loop))
+    return [do(keys.toggle_loop)] if chosen else []
 
 
 def _format(look: Look, settings: ExportSettings) -> ExportSettings:
@@ -173,14 +188,15 @@ def _size(
     """Draw width and height, a lock of their ratio, and a reset to the drawing's size."""
     actions: list[Action] = []
     label(look, _("Size"))
-    gap = imgui.get_style().item_inner_spacing.x
-    room = 2 * (1.15 * imgui.get_frame_height() + gap)
-    entered = draw_size_fields("", view.size, room)
-    imgui.same_line(0, gap)
+    gap, room = imgui.get_style().item_inner_spacing.x, 1.15 * imgui.get_frame_height()
     keeps = session.export.is_aspect_locked
-    icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
-    if icon_button(look, icon, "keep ratio", _("Keep proportions"), active=keeps):
-        actions.append(do(export_settings.set_aspect_locked, not keeps))
+
+    def draw_lock() -> None:
+        icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
+        if icon_button(look, icon, "keep ratio", _("Keep proportions"), active=keeps):
+            actions.append(do(export_settings.set_aspect_locked, not keeps))
+
+    entered = draw_size_fields("", view.size, room + gap, (draw_lock, room))
     imgui.same_line(0, gap)
     if icon_button(
         look,

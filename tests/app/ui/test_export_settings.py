@@ -181,3 +181,10 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     window.frames(2)
     assert not any("walk frames" in text for text in written)
     assert loose.exports.by_format == {"png": tmp_path / "walk frames"}
+
+
+def test_a_file_plays_once_or_for_ever_as_it_is_chosen_beside_its_frames(window, loose, choose):
+    choose("gif")
+    for choice, loops in (("for ever", True), ("for ever", True), ("once", False)):
+        window.run(lambda robot, name=choice: robot.item_click(f"//Export/**/###{name}"))
+        assert loose.document.loop == loops

@@ -429,11 +429,11 @@ def note_of_the_frame(window, project):
 
     def look(robot):
         robot.set_ref("//Export")
-        where["start"] = robot.item_info("**/###start").rect_full.min.y
+        where["speed"] = robot.item_info("**/##speed").rect_full.min.y
 
     window.run(look)
     source = extent_key(project.document)
-    return project.measured.extent.follows(source), where["start"]
+    return project.measured.extent.follows(source), where["speed"]
 
 
 @pytest.mark.usefixtures("everything")

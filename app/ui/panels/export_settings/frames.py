@@ -16,7 +16,14 @@ from app.export import export_times
 from app.export_formats import EXPORT_FORMATS
 from app.texts import _, ngettext
 from app.ui.style.theme import Look
-from app.ui.style.widgets import draw_tooltip, label, option_buttons, small_text, split_line
+from app.ui.style.widgets import (
+    FILL,
+    draw_tooltip,
+    label,
+    option_buttons,
+    small_text,
+    split_line,
+)
 
 RANGES = (("all", _("All frames")), ("own", _("From – to")))
 
@@ -66,14 +73,14 @@ def _repeat_and_speed(look: Look, settings: ExportSettings) -> ExportSettings:
     """Draw how often the frames play, if they are pictures, and how fast."""
     label(look, _("Repeat"))
     is_drawn = EXPORT_FORMATS[settings.format].is_drawn
-    widths = split_line(2, imgui.get_style().item_inner_spacing.x)
     imgui.begin_disabled(not is_drawn)
-    imgui.set_next_item_width(next(widths))
+    imgui.set_next_item_width(FILL)
     repeat = imgui.input_int("##repeat", settings.repeat if is_drawn else 1, 0)[1]
     has_repeat = imgui.is_item_deactivated_after_edit()
     draw_tooltip(_("How often the frames play in the file"))
     imgui.end_disabled()
-    imgui.set_next_item_width(next(widths))
+    label(look, _("Speed"))
+    imgui.set_next_item_width(FILL)
     speed = imgui.input_float("##speed", 100 * settings.speed, 0.0, 0.0, "%.3g %%")[1] / 100
     has_speed = imgui.is_item_deactivated_after_edit()
     draw_tooltip(_("Speed of the motion. Slower motion has more pictures, and no sound."))
