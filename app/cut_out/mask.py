@@ -236,7 +236,7 @@ def _without_background(
     share = 1 - float(background.mask.mean())
     least, most = SUBJECT_SHARES
     if background.agreement >= LEAST_AGREEMENT and least <= share <= most:
-        notice = _("uniform background removed ({share:.0%} of the picture)")
+        notice = _("plain background removed ({share:.0%} of the picture)")
         return ~background.mask, (notice.format(share=1 - share),), background
     if background.agreement < LEAST_AGREEMENT:
         share = background.agreement

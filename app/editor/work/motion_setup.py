@@ -99,4 +99,4 @@ class MotionJob:
     @property
     def step_label(self) -> str:
         """Description of the next step."""
-        return _("Reading the joints") if self.solve is None else self.solve.status_text
+        return _("Preparing the motion") if self.solve is None else self.solve.status_text

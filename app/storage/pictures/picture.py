@@ -62,7 +62,7 @@ SIGNATURE = 16  # bytes at the beginning that tell the format
 BAND = 64  # rows of pixels copied at once
 OPAQUE = 255
 HALF = 128  # levels: lighter mask pixels are kept
-NO_PICTURE = N_("{name} is not a picture that Lissom reads ({formats})")
+NO_PICTURE = N_("{name} is damaged, or not a picture that Lissom reads ({formats})")
 DAMAGED_PICTURE = N_("{name} is damaged or cut short")
 RARE_PICTURE = N_(
     "{name} is damaged, or a {format} picture of a rare kind; save it again as PNG or OpenRaster"

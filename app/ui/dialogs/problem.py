@@ -21,12 +21,12 @@ def draw_problem_dialog(report: ProblemReport, look: Look) -> list[Action]:
         _(
             "Lissom quit unexpectedly and saved this report. Nothing is sent. The report "
             "leaves out names of files and folders. Read it, change it as you like, then save "
-            "it and send it yourself."
+            "it and send it to the makers of Lissom."
         )
         if report.is_kept
         else _(
             "Nothing is sent. The report leaves out names of files and folders. Read it, "
-            "change it as you like, then save it and send it yourself."
+            "change it as you like, then save it and send it to the makers of Lissom."
         )
     )
     imgui.pop_text_wrap_pos()

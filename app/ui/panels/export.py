@@ -267,7 +267,7 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  {_('Export')}###start", FILL):
         actions.append(do(export_settings.repeat_export))
     look.note_place("start export")
-    draw_tooltip(_("Export now"), shown_keys(export_settings.repeat_export))
+    draw_tooltip(_("Export with these settings"), shown_keys(export_settings.repeat_export))
     if EXPORT_FORMATS[project.document.export.format].is_still:
         text, hint = (
             f"{icons.ICON_FA_COPY}  {_('Copy')}###copy",

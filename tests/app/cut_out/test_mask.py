@@ -62,7 +62,7 @@ def test_a_narrow_nearly_invisible_rim_is_kept() -> None:
 def test_a_plain_background_is_removed(noise: float) -> None:
     drawing = pictures.blob(200)
     subject = subject_mask(pictures.on_plain(drawing, (230, 240, 250), noise=noise))
-    assert "uniform background removed" in subject.notices[0]
+    assert "plain background removed" in subject.notices[0]
     assert np.mean(subject.mask != visible(drawing)) < 0.002
 
 
@@ -71,7 +71,7 @@ def test_a_background_with_jpeg_artefacts_is_removed() -> None:
     file = io.BytesIO()
     Image.fromarray(pictures.on_plain(drawing, WHITE)).convert("RGB").save(file, "JPEG", quality=75)
     subject = subject_mask(np.asarray(Image.open(file).convert("RGBA")))
-    assert "uniform background removed" in subject.notices[0]
+    assert "plain background removed" in subject.notices[0]
     assert not np.any((drawing[..., 3] > 200) & ~subject.mask)
     assert subject.mask.sum() < 1.3 * (drawing[..., 3] > 0).sum()
 

@@ -275,7 +275,7 @@ def decode_project(document: Document, name: str) -> OpenedFile:
 def _next_step(path: Path, runtimes: Sequence[LayerRuntime]) -> NextStep | None:
     """Return a suggestion for a drawing that was just opened: an opaque picture, or layers."""
     if len(runtimes) > 1:
-        text = _("Each of the {count} layers has handles of its own.")
+        text = _("{count} layers were opened. Pose each one with handles of its own.")
         merge = do(open_file, path, as_one_picture=True)
         step = NextStep(text.format(count=len(runtimes)), ONE_PICTURE, merge)
         return None if path.parent == sample_images() else step

@@ -139,7 +139,7 @@ def draw_ik_target(document: Document, look: Look, layer: Layer, frame: int) -> 
 
 def _format_bones(count: int) -> str:
     if not count:
-        return _("turns alone")
+        return _("no parent")
     return ngettext("with {count} parent", "with {count} parents", count).format(count=count)
 
 

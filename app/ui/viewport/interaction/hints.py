@@ -48,7 +48,7 @@ def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
         return _sentence([*hints, _("Esc goes back to posing")])
     if spot.handle is not None:
         if spot.handle in find_auto_pinned(screen.shown):
-            hints.append(_("auto-pinned: it stays until the next key"))
+            hints.append(_("stays in place until the next key"))
         return f"{screen.shown.clip.layer.handle(spot.handle).name}: {', '.join(hints)}"
     if not (spot.on_shape or spot.on_gizmo):
         hints += [_("wheel to zoom"), _("middle drag to move the view")]
@@ -79,7 +79,7 @@ def draw_badges(
         text = _("{mode}: {keys} goes back to posing").format(mode=mode, keys=end)
         return _draw_pill(look, text, top, room.x)
     if project.motion_job is not None:
-        text = _("{step}: {keys} cancels the motion preset").format(
+        text = _("{step} · {keys} cancels").format(
             step=project.motion_job.step_label, keys=shown_keys(apply_motion.cancel_motion_job)
         )
         return _draw_pill(look, text, top, room.x)
