@@ -24,6 +24,7 @@ class ToastStack:
     def __init__(self) -> None:
         self._since: dict[Toast, float] = {}  # when a message came to the front, in clock seconds
         self._at = 0.0  # the clock at the last frame
+        self._buttons: list[imgui.internal.ImRect] = []  # of the message in the last frame
 
     def draw(self, session: Session, look: Look) -> list[Action]:
         """Draw the newest message. Return actions that dismiss the expired ones.
@@ -34,12 +35,27 @@ class ToastStack:
         passed, self._at = now - self._at, now
         if not toasts:
             self._since.clear()
+            self._buttons.clear()
             return []
         front = toasts[-1]
         since = self._since.get(front, now)
         if session.dialogs.current is not None and front in self._since:
             since += passed
-        actions, is_hovered = _draw_toast(session, look, front, now - since, len(toasts) - 1)
+        is_on_button = any(each.contains(imgui.get_mouse_pos()) for each in self._buttons)
+        self._buttons.clear()
+        # Clicks beside its buttons go to the drawing behind it.
+        flags = _FLAGS if is_on_button else _FLAGS | imgui.WindowFlags_.no_mouse_inputs
+        imgui.push_style_var(imgui.StyleVar_.alpha, _opacity(now - since))
+        _place_toast(session, look, front, flags)
+        actions = _contents(front, look, self._buttons)
+        if len(toasts) > 1:
+            text = ngettext("{count} more message", "{count} more messages", len(toasts) - 1)
+            small_text(look, text.format(count=len(toasts) - 1))
+        low = imgui.get_window_pos()
+        is_hovered = imgui.is_mouse_hovering_rect(low, low + imgui.get_window_size(), clip=False)
+        _stripe(front, look)
+        imgui.end()
+        imgui.pop_style_var()
         if is_hovered:
             since = max(since, now - FADE)
         self._since = {front: since}
@@ -52,10 +68,13 @@ class ToastStack:
         return actions
 
 
-def _draw_toast(
-    session: Session, look: Look, toast: Toast, age: float, behind: int
-) -> tuple[list[Action], bool]:
-    """Draw a message. Return its actions, and whether the pointer is on it."""
+def _opacity(age: float) -> float:
+    """Return the opacity of a message that fades in."""
+    return max(0.15, min(1.0, age / FADE + 0.15))
+
+
+def _place_toast(session: Session, look: Look, toast: Toast, flags: int) -> None:
+    """Begin the window of a message at its place."""
     window = imgui.get_main_viewport()
     gap = 0.8 * look.em
     drawing = imgui.internal.find_window_by_name("###Viewport")
@@ -73,22 +92,13 @@ def _draw_toast(
         corner = window.work_pos + ImVec2(gap, height)
         imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(0, 1))
     imgui.set_next_window_size(ImVec2(WIDTH * look.em, 0))
-    imgui.push_style_var(imgui.StyleVar_.alpha, max(0.15, min(1.0, age / FADE + 0.15)))
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 1.0)
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.5 * look.em)
     imgui.push_style_color(imgui.Col_.window_bg, look.palette.raised)
-    imgui.begin(f"{TOAST}{toast.place}", flags=_FLAGS)
+    imgui.begin(f"{TOAST}{toast.place}", flags=flags)
     imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
-    actions = _contents(toast, look)
-    if behind:
-        text = ngettext("{count} more message", "{count} more messages", behind)
-        small_text(look, text.format(count=behind))
-    is_hovered = imgui.is_window_hovered(imgui.HoveredFlags_.root_and_child_windows)
-    _stripe(toast, look)
-    imgui.end()
     imgui.pop_style_color()
-    imgui.pop_style_var(3)
-    return actions, is_hovered
+    imgui.pop_style_var(2)
 
 
 def _is_guide_near(corner: ImVec2, look: Look) -> bool:
@@ -110,8 +120,14 @@ _FLAGS = (
 )
 
 
-def _contents(toast: Toast, look: Look) -> list[Action]:
+def _contents(toast: Toast, look: Look, buttons: list[imgui.internal.ImRect]) -> list[Action]:
+    """Draw a message, and note the places of its buttons. Return its actions."""
     actions = []
+
+    def note(*, is_pressed: bool) -> bool:
+        buttons.append(imgui.internal.ImRect(imgui.get_item_rect_min(), imgui.get_item_rect_max()))
+        return is_pressed
+
     imgui.text_colored(_colour(toast, look), ICONS[toast.tone])
     imgui.same_line()
     imgui.begin_group()
@@ -119,19 +135,20 @@ def _contents(toast: Toast, look: Look) -> list[Action]:
     imgui.text_unformatted(toast.text)
     imgui.pop_text_wrap_pos()
     details = f"{_('Details')}##{toast.born}"  # other messages may have a popup open
-    if toast.details and imgui.tree_node_ex(details, imgui.TreeNodeFlags_.no_tree_push_on_open):
+    flags = imgui.TreeNodeFlags_.no_tree_push_on_open
+    if toast.details and note(is_pressed=imgui.tree_node_ex(details, flags)):
         small_text(look, toast.details.strip()[-1500:])
-    if toast.details and imgui.small_button(_("Copy")):
+    if toast.details and note(is_pressed=imgui.small_button(_("Copy"))):
         imgui.set_clipboard_text(f"{toast.text}\n\n{toast.details}")
     if toast.action is not None:
         if toast.details:
             imgui.same_line()
-        if imgui.small_button(toast.label):
+        if note(is_pressed=imgui.small_button(toast.label)):
             actions += [toast.action, do(dismiss_toast, toast)]
     imgui.end_group()
     imgui.set_cursor_pos(ImVec2(imgui.get_window_width() - 2.1 * look.em, 0.35 * look.em))
     imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
-    if imgui.small_button(f"{icons.ICON_FA_XMARK}###dismiss"):
+    if note(is_pressed=imgui.small_button(f"{icons.ICON_FA_XMARK}###dismiss")):
         actions.append(do(dismiss_toast, toast))
     imgui.pop_style_color()
     return actions

@@ -1,13 +1,16 @@
 """The drawing comes first: few controls, and most of the window for the drawing."""
 
 import pytest
+from bars import open_bar
 from calm import SIZES, measure_calm
 from harness import Harness
-from imgui_bundle import imgui
+from imgui_bundle import ImVec2, hello_imgui, imgui
 
 from app.editor.actions import viewing
+from app.editor.actions.dialog_actions import show_notice
 from app.storage.assets import sample_images
 from app.ui.panel import is_in_front
+from app.ui.style.widgets import TOAST
 
 MOST_CONTROLS = 28
 # Of the window, by its size: 1280 × 800, 1024 × 700, 1600 × 1000 at 200 %.
@@ -68,3 +71,47 @@ def test_the_timeline_grows_with_its_rows_until_a_person_sets_its_height(window)
     window.frames(10)
     window.resize((1280, 800))
     assert height() == pytest.approx(low, abs=1), "the layout was put back"
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.usefixtures("drawing")
+def test_all_tabs_keep_their_words_while_measuring(window, size):
+    window.resize(*size)
+    window.act(viewing.toggle_measuring)
+    window.frames(12)
+    shown = hello_imgui.get_runner_params().docking_params.dockable_windows
+    side = [tab.label for tab in shown if tab.dock_space_name == "side" and tab.is_visible]
+    assert len(side) == 6
+    assert all(label.split("###")[0] == label.split("###")[1] for label in side), side
+    window.act(viewing.toggle_measuring)
+    window.frames(6)
+    window.show_tab("Handle")
+
+
+def test_clicks_beside_the_buttons_of_a_message_go_to_the_drawing(window):
+    project = window.again(open_bar)
+    window.act(show_notice, "A message that lies over the drawing")
+    window.frames(3)
+    (toast,) = window.session.notices.toasts
+    message = imgui.internal.find_window_by_name(f"{TOAST}{toast.place}")
+    place, corner = message.pos + message.size * 0.5, message.pos + ImVec2(message.size.x, 0)
+    selected = project.selection.handles
+    assert selected
+
+    def click(robot):
+        robot.mouse_move_to_pos(place)
+        robot.mouse_click(0)
+
+    window.run(click)
+    assert window.session.notices.toasts == [toast]
+    assert not project.selection.handles, "a click beside the shape selects nothing"
+    dismiss = corner + ImVec2(-1.2, 1.0) * window.text_height()
+
+    def close(robot):
+        robot.mouse_move_to_pos(dismiss)
+        robot.yield_(2)
+        robot.mouse_click(0)
+
+    window.run(close)
+    window.frames(2)
+    assert not window.session.notices.toasts

@@ -46,6 +46,7 @@ class Docking:
         # What decides which tabs are shown, and the height in em that the timeline wants.
         self._shown: tuple[object, ...] = ()
         self._height = 0.0
+        self._tabs_width = 0.0  # in em: of the panel's tabs with their titles
         self._is_folded = False
         self._frames_to_focus = 0
         self._front: list[Panel] = []  # the panels in front, also while they are folded
@@ -85,18 +86,15 @@ class Docking:
         if self._frames_to_focus:
             self._focus_front(layout)
         room = imgui.get_io().display_size
-        around: tuple[float, ...] = (room.x, room.y, scale, self._height, self._is_folded)
+        wanted = self._height, self._tabs_width
+        around: tuple[float, ...] = (room.x, room.y, scale, *wanted, self._is_folded)
         if around != self._around or imgui.is_any_mouse_down() or layout.layout_reset:
             self._around, self._frames_to_fit = around, FITTING
         if not self._frames_to_fit:
             return
         self._frames_to_fit -= 1
-        sizes = usual_sizes(
-            room,
-            scale * FONT_SIZE,
-            self._height,
-            is_graph=project is not None and project.graph.is_open,
-        )
+        is_graph = project is not None and project.graph.is_open
+        sizes = usual_sizes(room, scale * FONT_SIZE, *wanted, is_graph=is_graph)
         layout.docking_splits = splits(room, sizes, scale * FONT_SIZE)
         preferences = session.settings.preferences
         if layout.layout_reset:
@@ -154,6 +152,7 @@ class Docking:
         if tabs != self._tabs:
             self._tabs = tabs
             self._tab_spacing = self._space_tabs(nodes)
+            self._tabs_width = self._side_tabs_width(nodes)
             for panel, tab, node in zip(self._panels, shown, nodes, strict=True):
                 tab.label = panel.label if node is None else self._label(panel, node, nodes)
         for panel, tab, window in zip(self._panels, shown, windows, strict=True):
@@ -223,6 +222,14 @@ class Docking:
                 padding = max(min(usual, free / (2 * count + 2)), tight)
                 chosen = min(chosen or usual, float(int(padding)))
         return None if chosen is None else (chosen, tight)
+
+    def _side_tabs_width(self, nodes: Sequence[imgui.internal.DockNode | None]) -> float:
+        """Return the width in em that the tabs of the side dock need with their titles."""
+        em = imgui.get_font_size()
+        pairs = zip(self._panels, nodes, strict=True)
+        titles = [_(panel.title) for panel, node in pairs if node and panel.place == SIDE_DOCK]
+        words = sum(imgui.calc_text_size(title).x for title in titles) / em
+        return words + (len(titles) + 1) * 4 * TAB_GAP
 
     def _together(
         self,

@@ -17,11 +17,15 @@ SIDE_DOCK, BOTTOM_DOCK = "side", "bottom"
 
 
 def usual_sizes(
-    room: ImVec2, em: float, height: float, *, is_graph: bool
+    room: ImVec2, em: float, height: float, tabs: float, *, is_graph: bool
 ) -> dict[int | str, float]:
-    """Return the panel's width and the timeline's height in pixels, if no person sets them."""
+    """Return the panel's width and the timeline's height in pixels, if no person sets them.
+
+    In em, the timeline wants `height`, and the tabs of the panel with their titles are `tabs` wide.
+    """
     grown = GROWN_GRAPH if is_graph else GROWN
-    side = min(max(SHARE * room.x, LEAST_SIDE * em), SIDE * em, MOST[0] * room.x)
+    side = min(max(SHARE * room.x, LEAST_SIDE * em), SIDE * em)
+    side = min(max(side, tabs * em), MOST[0] * room.x)
     bottom = min(max(height, BOTTOM) * em, max(grown * room.y, BOTTOM * em))
     return {SIDE_DOCK: side, BOTTOM_DOCK: bottom}
 
