@@ -53,6 +53,13 @@ def toggle_tree_row(_: Session, project: Project, row: str) -> None:
 
 
 @with_project
+def rest_on_folded_row(session: Session, project: Project, row: str) -> None:
+    """Note that the pointer drags over a folded row in this frame; after a while, the row opens."""
+    if project.layer_list.rest_on_row(row, session.clock()):
+        project.layer_list.toggle_row(row)
+
+
+@with_project
 def reset_tree_rows(_: Session, project: Project) -> None:
     """List only the layers of open rows, and the active layer."""
     project.layer_list.drop_lingering()

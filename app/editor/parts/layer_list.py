@@ -1,10 +1,22 @@
 """The list of layers: its rows, and soloed layers."""
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from app.document import Document, TreeRow, layer_tree
 from app.editor.work.derived import Derived
 from app.editor.work.revised import Revised
+
+UNFOLD = 0.6  # seconds for which a drag rests on a folded row until the row opens
+PAUSE = 0.25  # seconds without a frame on the row after which the rest begins anew
+
+
+class RowRest(NamedTuple):
+    """The rest of a drag on a folded row: its beginning, and its last frame, in seconds."""
+
+    row: str
+    since: float
+    last: float
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -17,6 +29,7 @@ class LayerListState(Revised):
     # Formerly active layers whose rows stay until the pointer is over the drawing again.
     lingering: frozenset[int] = frozenset()
     last_listed_layer: int | None = None  # the layer to which the list was scrolled
+    row_rest: RowRest | None = None
     named_layer: int | None = None  # layer whose name is edited
     pointed_layer: int | None = None  # layer whose row is under the pointer
     is_import_log_open: bool = False
@@ -40,6 +53,14 @@ class LayerListState(Revised):
         """Open or close a row of the layer tree."""
         self.toggled_rows ^= {row}
         self.drop_lingering()
+
+    def rest_on_row(self, row: str, now: float) -> bool:
+        """Note a frame of a drag on a folded row; return whether the rest was long enough."""
+        rest = self.row_rest
+        goes_on = rest is not None and rest.row == row and now - rest.last < PAUSE
+        since = rest.since if rest is not None and goes_on else now
+        self.row_rest = RowRest(row, since, now)
+        return now - since >= UNFOLD
 
     def linger(self, layer: int) -> None:
         """Let the row of a layer stay that is not active any more."""

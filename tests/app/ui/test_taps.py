@@ -12,8 +12,7 @@ import pytest
 from bars import BENT
 from imgui_bundle import ImVec2, imgui
 
-from app.document import scene_commands
-from app.editor.actions import editing, playback
+from app.editor.actions import playback
 from tests.campaigns.taps import tapped
 
 LEFT = 0
@@ -59,12 +58,7 @@ def until_all_is_taken(window):
 
 @pytest.fixture
 def ruler(window, bent):
-    """Where each frame is on the ruler; the pointer is elsewhere.
-
-    There is a marker, since the first one makes the timeline higher by its lane.
-    """
-    window.act(editing.edit_document, scene_commands.add_marker(0))
-    window.frames(3)
+    """Where each frame is on the ruler; the pointer is elsewhere."""
     first, last = (place_of(window, f"key {key.frame}").get_center() for key in bent.layer.keys)
     middle = place_of(window, "ruler").get_center().y
     imgui.get_io().add_mouse_pos_event(first.x, first.y - 300)
@@ -123,7 +117,7 @@ def test_keys_and_taps_come_in_turn(window, bent, ruler):
             turn(*CTRL, imgui.Key.z, down=True)
             turn(*CTRL, imgui.Key.z, down=False)
     until_all_is_taken(window)
-    assert [marker.frame for marker in bent.document.markers] == [0, 2, 8, 16]
+    assert [marker.frame for marker in bent.document.markers] == [2, 8, 16]
 
 
 @pytest.mark.skipif(

@@ -489,8 +489,9 @@ def test_no_row_moves_while_a_folded_group_is_dragged(window, scene, ids, use):
     window.act(set_active_layer, ids["hat"])
     window.frames(3)
     key = next(row.key for row in scene.tree if row.group)
-    if next(row for row in scene.tree if row.group).is_open:
-        window.act(toggle_tree_row, key)
+    group = next(row for row in scene.tree if row.group)
+    if group.is_open:
+        window.act(toggle_tree_row, group.toggle)
     window.frames(3)
     before, places = [row.key for row in scene.tree], []
 
@@ -509,6 +510,40 @@ def test_no_row_moves_while_a_folded_group_is_dragged(window, scene, ids, use):
     use(drag)
     assert places[0] == places[1]
     assert scene.selection.active == ids["hat"]
+
+
+def test_folded_group_opens_under_a_drag_that_rests_and_takes_the_drop(window, scene, ids, use):
+    command = group_commands.group_layers([ids["ah"], ids["oh"]], "mouth")
+    window.act(editing.edit_document, command)
+    window.act(set_active_layer, ids["hat"])
+    window.frames(3)
+
+    def group():
+        return next(row for row in scene.tree if row.group)
+
+    if group().is_open:
+        window.act(toggle_tree_row, group().toggle)
+        window.frames(3)
+    opened = []
+
+    def drag(robot):
+        robot.mouse_move(row_of(ids["stick"]))
+        robot.mouse_down(0)
+        robot.mouse_move_to_pos(robot.item_info(row_of(group().key)).rect_full.get_center())
+        for _ in range(3):
+            robot.yield_(15)
+            opened.append(group().is_open)
+        rect = robot.item_info(row_of(ids["ah"])).rect_full
+        place = ImVec2(rect.get_center().x, rect.max.y - 0.1 * rect.get_height())
+        robot.mouse_move_to_pos(place)
+        robot.yield_(2)
+        robot.mouse_up(0)
+        robot.yield_(2)
+
+    use(drag)
+    assert opened == [False, False, True], "after 0.6 s"
+    front = [row.layer.name for row in scene.tree if row.layer]
+    assert front.index("stick") == front.index("ah") + 1, "it lands where the line was"
 
 
 def test_a_group_is_dragged_by_its_row(window, scene, ids, use):

@@ -1,10 +1,11 @@
 """Drag and drop of rows in the tree of layers: between other rows, or onto a row."""
 
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import ImVec2, hello_imgui, imgui
 
 from app.document import TreeRow
 from app.editor import Action, Project, do
 from app.editor.layering.layer_list import add_layers_to_group, move_layers_beside
+from app.editor.layering.layer_selection import rest_on_folded_row
 from app.editor.layering.parenting import attach_layers, is_same_or_descendant
 from app.editor.layering.switches import add_to_switch
 from app.texts import ngettext
@@ -21,11 +22,12 @@ def drag_layer_row(
     """Let the last item, a row, be dragged between two other rows or onto a row.
 
     A drop onto a layer attaches; a drop onto a group or a switch adds a member. The row of a group
-    or a switch drags all its layers. Nothing is selected meanwhile, so that no row moves.
+    or a switch drags all its layers. Nothing is selected meanwhile, so that no row moves. A folded
+    row opens after the pointer has rested on it.
     """
     actions: list[Action] = []
     if imgui.begin_drag_drop_source():
-        number = project.tree.index(row)
+        number = _number_of(row)
         imgui.set_drag_drop_payload_py_id(MOVED, number)
         dragged = _dragged(project, number)
         text, count = row.name, len(dragged)
@@ -47,7 +49,12 @@ def drag_layer_row(
         _show(look, low, high, is_onto=is_onto, is_above=share < 0.5)
         if is_onto and _is_circle(project, row, payload.data_id):
             imgui.set_mouse_cursor(imgui.MouseCursor_.not_allowed)
-        if imgui.is_mouse_released(imgui.MouseButton_.left):
+        is_dropped = imgui.is_mouse_released(imgui.MouseButton_.left)
+        if row.toggle and not row.is_open and not is_dropped:
+            actions.append(do(rest_on_folded_row, row.toggle))
+            # The pointer rests, and yet time goes on.
+            hello_imgui.request_refresh()
+        if is_dropped:
             if is_onto and onto is not None:
                 actions.append(onto)
             elif row.layer is not None:
@@ -59,11 +66,17 @@ def drag_layer_row(
     return actions
 
 
+def _number_of(row: TreeRow) -> int:
+    """Return a number that stays the same while rows are opened and scrolled."""
+    return hash(row.key) & 0x7FFFFFFF
+
+
 def _dragged(project: Project, number: int) -> tuple[int, ...]:
     """Return the layers of the dragged row: all selected layers if the row's are among them."""
-    if number >= len(project.tree):
+    row = next((each for each in project.tree if _number_of(each) == number), None)
+    if row is None:
         return ()
-    dragged, chosen = project.tree[number].layers, project.selected_layers
+    dragged, chosen = row.layers, project.selected_layers
     return chosen if set(dragged) <= set(chosen) else dragged
 
 
