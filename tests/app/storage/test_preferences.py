@@ -9,6 +9,7 @@ import pytest
 
 from app.errors import LissomError
 from app.folders import home_folder, settings_folder
+from app.storage import preferences
 from app.storage.preferences import (
     MOST_RECENT,
     Preferences,
@@ -21,6 +22,7 @@ CHOSEN = Preferences(
     scale=1.75,
     auto_key=False,
     backdrop="#12ab9f",
+    language="de",
     ghosts_before=0,
     ghosts_after=6,
     ghost_step=24,
@@ -55,6 +57,7 @@ def test_a_damaged_file_is_as_none(tmp_path, content):
         ("scale", [True, 0, 0.7499, 3.01, 1e300, -1, "1", None, float("nan"), float("inf"), [1]]),
         ("auto_key", [None, 0, "no", {}]),
         ("backdrop", ["#12345", "#1234567", "#GGGGGG", "red", 7, None]),
+        ("language", ["tlh", "../de", 7, None, ["de"]]),
         ("ghosts_before", [True, -1, 7, "2", None, float("nan")]),
         ("ghosts_after", [-1, 7, {}]),
         ("ghost_step", [0, 25, []]),
@@ -72,12 +75,22 @@ def test_an_entry_that_makes_no_sense_is_as_it_is_at_first(tmp_path, name, value
         assert load_preferences(tmp_path) == replace(CHOSEN, **first), value
 
 
+def test_keys_of_actions_survive_a_change_of_the_language(tmp_path, monkeypatch):
+    german = {"Undo": "Rückgängig"}
+    monkeypatch.setattr(preferences, "_", lambda text: german.get(text, text))
+    monkeypatch.setattr(preferences, "source_text", {german[text]: text for text in german}.get)
+    save_preferences(tmp_path, Preferences(keys={"Rückgängig": "Ctrl+J"}, language="de"))
+    assert load_preferences(tmp_path).keys == {"Rückgängig": "Ctrl+J"}
+    monkeypatch.undo()
+    assert load_preferences(tmp_path) == Preferences(keys={"Undo": "Ctrl+J"}, language="de")
+
+
 def test_a_later_version_may_know_more(tmp_path):
     save_preferences(tmp_path, CHOSEN)
     file = tmp_path / "preferences.json"
     content = json.loads(file.read_text(encoding="utf-8"))
     content["recent"] += [None, 5]
-    file.write_text(json.dumps(content | {"language": "tlh"}), encoding="utf-8")
+    file.write_text(json.dumps(content | {"dialect": "tlh"}), encoding="utf-8")
     assert load_preferences(tmp_path) == CHOSEN
 
 

@@ -36,6 +36,20 @@ def test_theme_and_scale_change_at_once(window):
     assert window.text_height() > text_size
 
 
+def test_language_is_chosen_for_the_next_start(window):
+    def choose(name):
+        def play(robot):
+            robot.set_ref("##MainMenuBar")
+            robot.menu_click(f"View/Language/{name}")
+
+        window.run(play)
+        return window.session.settings.preferences.language
+
+    assert choose("Deutsch") == "de"
+    assert "when Lissom starts again" in window.session.notices.toasts[-1].text
+    assert [choose(name) for name in ("English", "As the system")] == ["en", ""]
+
+
 def test_changing_the_theme_changes_no_size(window):
     height = window.status_height()
     for _ in range(4):
