@@ -12,6 +12,7 @@ from engine.deform.forces.pulls import (
     MAX_PULL_FORCE as MAX_PULL_FORCE,
     BoundedPull as BoundedPull,
 )
+from engine.deform.forces.ties import Ties as Ties
 from engine.deform.handles import (
     MOST_HANDLES as MOST_HANDLES,
     Handles as Handles,

@@ -229,7 +229,7 @@ class Handles:
             if abs(targets[i] - targets[j]) > APART * size:
                 raise EngineError(OTHER_TARGETS, first=i, second=j)
         pulling = BoundedPulls.of(hands, self.stiffness, self.around, size)
-        aimed = Aims.of(aims, 0 if self.armature is None else len(self.armature.stiffness))
+        aimed = Aims.of(aims, 0 if self.armature is None else len(self.armature.shafts.stiffness))
         if rotations is None:
             return HandleTargets(targets, np.full(len(targets), np.nan), pulling, aimed)
         angles = as_reals(rotations, "rotations")

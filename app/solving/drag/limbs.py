@@ -15,12 +15,12 @@ from engine.deform import Aim, Armature, Hinge, Shaft
 from engine.maps import Boundary, HarmonicMap
 
 # κ L² of each point of the body.
-BODY_STIFFNESS = 3e2
+BODY_STIFFNESS = 3e3
 # Largest force, per L, with which joints are pulled to the places of kinematics.
 JOINT_FORCE = 50.0
 # The same of dragged ends, which kinematics keeps within reach. An arm that has to bend inside a
 # broad trunk needs more than joints do.
-END_FORCE = 200.0
+END_FORCE = 1000.0
 # Weight of rigid ends. Around other ends the bone's stiffness makes their handles firmer.
 END_WEIGHT = 10.0
 # Largest force, per L, with which rigid ends are turned to their angles, at this lever over L.
@@ -54,7 +54,8 @@ class PosedLimbs:
                 for limb in limbs.limbs
                 if limb.parent is None
             ]
-            armature = Armature.place(boundary, [*limbs.shafts, body], [*limbs.hinges, *hinges])
+            hinges = [*limbs.hinges, *hinges]
+            armature = Armature.place(boundary, [*limbs.shafts, body], hinges, limbs.ties)
         return cls(limbs=limbs, start=start, armature=armature, has_body=has_body)
 
     def locate(self, shape: HarmonicMap) -> PlacedLimbs:

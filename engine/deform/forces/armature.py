@@ -1,22 +1,9 @@
-"""Bones: rigid shafts, hinges between them, and aims.
+"""Bones: rigid shafts, hinges between them, and aims; and ties across the drawn line.
 
-A shaft is a handful of points p of the drawing. Its energy is the misfit of the best rigid motion
-R(z) = c + u z, |u| = 1,
-
-    κ min Σ |f(p_i) − R(p_i)|² = κ (Σ |f̂_i|² + S − 2 |q|),  q = Σ conj(p̂_i) f̂_i,  S = Σ |p̂_i|²,
-
-with p̂ and f̂ less their means; u = q / |q|. It names no place: its forces have no resultant and no
-moment. The gradient at point i is 2 κ (f̂_i − u p̂_i). The Hessian is the constant one of κ Σ |f̂|²
-less 2 κ S / |q| n nᵀ, n = i u p̂ / √S; with min(1/|q|, 1/S) it is positive, the exact projection.
-
-R also moves places that are no point of the shaft, such as a joint. To first order
-
-    dR(z) = mean d + i u (z − mean p) Im(conj(u) Σ conj(p̂_i) d_i) / |q|.
-
-A hinge costs κ |R_a(z_a) − R_b(z_b)|². The lengths of bones are those between hinges, so they do
-not change, and the drawing at a joint is free. An aim costs κ |R(z) − target|², and beyond an error
-e₀ = F / (2 κ) the part of Huber (1964) with the constant force F. Both have the Hessian of Gauss
-and Newton; an aim beyond e₀ has the secant's.
+A hinge costs κ |R_a(z_a) − R_b(z_b)|², R the motions of its shafts (`rigid_shafts`). The lengths of
+bones are those between hinges, so they do not change, and the drawing at a joint is free. An aim
+costs κ |R(z) − target|², and beyond an error e₀ = F / (2 κ) the part of Huber (1964) with the
+constant force F. Both have the Hessian of Gauss and Newton; an aim beyond e₀ has the secant's.
 """
 
 from collections.abc import Sequence
@@ -26,6 +13,8 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, readonly
 from engine.deform.forces.bones import Aims, Hinge, Motions, Shaft, require_armature
+from engine.deform.forces.rigid_shafts import TINY, RigidShafts
+from engine.deform.forces.ties import Ties
 from engine.deform.model.position_hessian import STIFFNESS, position_gram_matrix
 from engine.deform.model.unknowns import by_unknowns
 from engine.maps import Boundary
@@ -33,27 +22,16 @@ from engine.maps import Boundary
 # κ of hinges and of aims, times L².
 HINGE_STIFFNESS = 3e5
 AIM_STIFFNESS = STIFFNESS
-TINY = 1e-300
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Armature:
-    """Shafts and hinges of a shape.
+    """Shafts, hinges and ties of a shape.
 
-    Build it with `Armature.place`.
+    Build it with `Armature.place`. Its points (t,) are those of all shafts, and then of the ties.
 
     Parameters
     ----------
-    points : complex128, shape (t,)
-        Of all shafts.
-    owners : intp, shape (t,)
-        The number of each point's shaft.
-    offsets : complex128, shape (t,)
-        p̂ of each point.
-    stiffness, squares, counts : float64, shape (s,)
-        κ, S and the number of points of each shaft.
-    centres : complex128, shape (s,)
-        Mean of the rest of each shaft.
     hinges : intp, shape (2, j)
         The shafts of each hinge.
     hinge_places : complex128, shape (2, j)
@@ -66,25 +44,24 @@ class Armature:
         As those of `Handles`.
     """
 
-    points: Complexes
-    owners: Indices
-    offsets: Complexes
-    stiffness: Floats
-    squares: Floats
-    counts: Floats
-    centres: Complexes
+    shafts: RigidShafts
     hinges: Indices
     hinge_places: Complexes
     hinge_stiffness: Floats
+    ties: Ties
     size: float
     coordinates: Complexes
     basis_coordinates: Complexes
 
     @classmethod
     def place(
-        cls, boundary: Boundary, shafts: Sequence[Shaft], hinges: Sequence[Hinge] = ()
+        cls,
+        boundary: Boundary,
+        shafts: Sequence[Shaft],
+        hinges: Sequence[Hinge] = (),
+        ties: Ties | None = None,
     ) -> "Armature":
-        """Place shafts and hinges on a shape.
+        """Place shafts, hinges and ties on a shape.
 
         Raises
         ------
@@ -92,25 +69,17 @@ class Armature:
             If all points of a shaft coincide, or a hinge names a shaft that does not exist.
         """
         require_armature(shafts, hinges)
-        counts = np.array([len(shaft.points) for shaft in shafts])
-        points = np.concatenate([shaft.points for shaft in shafts]).astype(np.complex128)
-        owners = np.repeat(np.arange(len(shafts), dtype=np.intp), counts)
-        centres = np.array([shaft.rest.mean() for shaft in shafts], np.complex128)
-        offsets = np.concatenate([shaft.rest for shaft in shafts]) - centres[owners]
+        ties = Ties.none() if ties is None else ties
+        placed = RigidShafts.place(shafts, boundary.size)
         ends = np.array([(hinge.first, hinge.second) for hinge in hinges], np.intp)
         places = np.array([(hinge.first_place, hinge.second_place) for hinge in hinges])
-        coordinates = boundary.span.coordinates(points)
+        coordinates = boundary.span.coordinates(np.concatenate([placed.points, ties.points]))
         return cls(
-            points=readonly(points),
-            owners=readonly(owners),
-            offsets=readonly(offsets),
-            stiffness=readonly(np.array([s.stiffness for s in shafts]) / boundary.size**2),
-            squares=readonly(np.asarray(np.bincount(owners, np.abs(offsets) ** 2), np.float64)),
-            counts=readonly(counts.astype(np.float64)),
-            centres=readonly(centres),
+            shafts=placed,
             hinges=readonly(ends.reshape(-1, 2).T),
             hinge_places=readonly(places.reshape(-1, 2).T.astype(np.complex128)),
             hinge_stiffness=readonly(np.full(len(hinges), HINGE_STIFFNESS / boundary.size**2)),
+            ties=ties,
             size=boundary.size,
             coordinates=readonly(coordinates),
             basis_coordinates=readonly(coordinates @ boundary.basis),
@@ -120,98 +89,59 @@ class Armature:
         """Return the same armature with `factor` times the stiffness."""
         return replace(
             self,
-            stiffness=readonly(factor * self.stiffness),
+            shafts=self.shafts.softened(factor),
             hinge_stiffness=readonly(factor * self.hinge_stiffness),
+            ties=self.ties.softened(factor),
         )
 
     def hessian(self, boundary: Boundary) -> Floats:
         """Return the constant part (u, u) of the shafts' Hessian, that of κ Σ |f̂|²."""
-        means = self._means(self.basis_coordinates)
-        rows = self.basis_coordinates - means[self.owners]
-        factors = np.sqrt(2.0 * self.stiffness[self.owners])
+        own, _ = self._split(self.basis_coordinates)
+        rows = own - self.shafts.means(own)[self.shafts.owners]
+        factors = np.sqrt(2.0 * self.shafts.stiffness[self.shafts.owners])
         return position_gram_matrix(boundary, factors[:, None] * rows)
 
     def motions(self, positions: Complexes) -> Motions:
-        """Return the best rigid motions with the points (t,) at these positions."""
-        means = self._means(positions)
-        offsets = positions - means[self.owners]
-        correlations = self._sums(self.offsets.conj() * offsets)
-        turns = correlations / np.maximum(np.abs(correlations), TINY)
-        return Motions(offsets, means, correlations, turns)
-
-    def carried(
-        self,
-        motions: Motions,
-        shafts: Indices,
-        places: Complexes,
-        are_places: Floats | float = 1.0,
-    ) -> Complexes:
-        """Return where the motions of shafts (a,) bring places (a,) in their rest.
-
-        Ways, where `are_places` is 0, only turn.
-        """
-        moved: Complexes = are_places * motions.means[shafts] + motions.turns[shafts] * (
-            places - are_places * self.centres[shafts]
-        )
-        return moved
+        """Return the best rigid motions of the shafts with the points (t,) at these positions."""
+        return self.shafts.motions(self._split(positions)[0])
 
     def energy(self, positions: Complexes, aims: Aims | None) -> float:
-        """Return the energy of shafts, hinges and aims."""
+        """Return the energy of shafts, hinges, aims and ties."""
         motions = self.motions(positions)
-        misfit = self._sums(np.abs(motions.offsets) ** 2).real + self.squares
-        misfit -= 2.0 * np.abs(motions.correlations)
         errors, stiffness, soft = self._errors(motions, aims)
         # Beyond e₀ the energy is κ e₀ (2 e − e₀), and the softened stiffness is κ e₀ / e.
         costs = soft * np.abs(errors) ** 2 * (2.0 - soft / stiffness)
-        return float(self.stiffness @ misfit + costs.sum())
+        of_ties = self.ties.energy(self._split(positions)[1])
+        return self.shafts.energy(motions) + float(costs.sum()) + of_ties
 
     def gradient(self, positions: Complexes, aims: Aims | None) -> Complexes:
         """Return the gradient of the energy at the points (t,)."""
         motions = self.motions(positions)
-        misfits = motions.offsets - motions.turns[self.owners] * self.offsets
         errors, _, soft = self._errors(motions, aims)
         forces = 2.0 * np.concatenate([soft * errors.real, soft * errors.imag])
-        gradient: Complexes = 2.0 * self.stiffness[self.owners] * misfits
-        return gradient + forces @ self._functionals(motions, aims)
+        of_shafts = self.shafts.gradient(motions) + forces @ self._functionals(motions, aims)
+        return np.concatenate([of_shafts, self.ties.gradient(self._split(positions)[1])])
 
     def hessian_product(
         self, positions: Complexes, aims: Aims | None, changes: Complexes
     ) -> Complexes:
         """Return the product (t,) of the projected Hessian with changes of the points."""
-        motions = self.motions(positions)
-        twice = 2.0 * self.stiffness[self.owners]
-        product: Complexes = twice * (changes - self._means(changes)[self.owners])
-        for weights, sign in zip(self.weights(motions, aims), (1.0, -1.0), strict=True):
-            product += sign * (weights.conj() @ changes).real @ weights
-        return product
+        (_, ties), (own, others) = self._split(positions), self._split(changes)
+        shafts = self.shafts
+        product = 2.0 * shafts.stiffness[shafts.owners] * (own - shafts.means(own)[shafts.owners])
+        for weights, sign in zip(self._weights(positions, aims), (1.0, -1.0), strict=True):
+            product += sign * (weights.conj() @ own).real @ weights
+        return np.concatenate([product, self.ties.hessian_product(ties, others)])
 
     def rows(
         self, boundary: Boundary, positions: Complexes, aims: Aims | None
     ) -> tuple[Floats, Floats]:
         """Return rows (…, u) whose Gram matrices are added to the constant Hessian, and removed."""
-        added, removed = (
-            by_unknowns(
-                boundary,
-                weights.conj() @ self.basis_coordinates,
-                weights @ self.basis_coordinates,
-            )
-            for weights in self.weights(self.motions(positions), aims)
-        )
-        return added, removed
-
-    def weights(self, motions: Motions, aims: Aims | None) -> tuple[Complexes, Complexes]:
-        """Return weights w (…, t) of changes d, for the squares of Re Σ conj(w) d.
-
-        Those of the first array are added to the constant Hessian, those of the second removed.
-        """
-        _, _, soft = self._errors(motions, aims)
-        added = np.sqrt(2.0 * np.tile(soft, 2))[:, None] * self._functionals(motions, aims)
-        inverse = np.minimum(1.0 / np.maximum(np.abs(motions.correlations), TINY), 1 / self.squares)
-        factors = np.sqrt(2.0 * self.stiffness * inverse) * 1j * motions.turns
-        removed = self._is_of(np.arange(len(factors), dtype=np.intp)) * (
-            factors[self.owners] * self.offsets
-        )
-        return added, removed
+        of_shafts, of_ties = self._split(self.basis_coordinates)
+        added, removed = self._weights(positions, aims)
+        ties = self.ties.weights(self._split(positions)[1])
+        joined = np.concatenate([_rows(boundary, added, of_shafts), _rows(boundary, ties, of_ties)])
+        return joined, _rows(boundary, removed, of_shafts)
 
     def cut_aims(self, positions: Complexes, aims: Aims, most: float) -> tuple[Aims, bool]:
         """Return the aims with targets at most so far ahead, and whether any was farther."""
@@ -224,10 +154,25 @@ class Armature:
         """Return how far the places of aims (a,) are from their targets."""
         return self._aim_errors(self.motions(positions), aims)
 
+    def _split(self, values: Complexes) -> tuple[Complexes, Complexes]:
+        """Return values of the points (t, …) for shafts and for ties."""
+        count = len(self.shafts.points)
+        return values[:count], values[count:]
+
+    def _weights(self, positions: Complexes, aims: Aims | None) -> tuple[Complexes, Complexes]:
+        """Return weights w of changes d of the shafts' points, for the squares of Re Σ conj(w) d.
+
+        Those of the first array are added to the constant Hessian, those of the second removed.
+        """
+        motions = self.motions(positions)
+        _, _, soft = self._errors(motions, aims)
+        added = np.sqrt(2.0 * np.tile(soft, 2))[:, None] * self._functionals(motions, aims)
+        return added, self.shafts.removed_weights(motions)
+
     def _errors(self, motions: Motions, aims: Aims | None) -> tuple[Complexes, Floats, Floats]:
         """Return the errors of hinges and aims, their κ, and κ softened to their largest force."""
         first, second = (
-            self.carried(motions, shafts, places)
+            self.shafts.carried(motions, shafts, places)
             for shafts, places in zip(self.hinges, self.hinge_places, strict=True)
         )
         errors, stiffness = first - second, self.hinge_stiffness
@@ -243,56 +188,27 @@ class Armature:
         )
 
     def _aim_errors(self, motions: Motions, aims: Aims) -> Complexes:
-        return self.carried(motions, aims.shafts, aims.places, aims.are_places) - aims.targets
+        moved = self.shafts.carried(motions, aims.shafts, aims.places, aims.are_places)
+        return moved - aims.targets
 
     def _functionals(self, motions: Motions, aims: Aims | None) -> Complexes:
-        """Return the weights of changes of the points in the errors of hinges and aims.
+        """Return the weights of changes of the shafts' points in the errors of hinges and aims.
 
-        Of shape (2 c, t): the real parts of all errors change by Re Σ conj(w) d, and the imaginary
+        Of shape (2 c, …): the real parts of all errors change by Re Σ conj(w) d, and the imaginary
         parts after them.
         """
         first, second = (
-            self._functionals_of(motions, shafts, places)
+            self.shafts.functionals(motions, shafts, places)
             for shafts, places in zip(self.hinges, self.hinge_places, strict=True)
         )
         between = first - second
         if aims is not None:
-            own = self._functionals_of(motions, aims.shafts, aims.places, aims.are_places)
+            own = self.shafts.functionals(motions, aims.shafts, aims.places, aims.are_places)
             between = np.concatenate([between, own], axis=1)
-        joined: Complexes = between.reshape(-1, len(self.points))
+        joined: Complexes = between.reshape(-1, len(self.shafts.points))
         return joined
 
-    def _functionals_of(
-        self,
-        motions: Motions,
-        shafts: Indices,
-        places: Complexes,
-        are_places: Floats | None = None,
-    ) -> Complexes:
-        """Return the weights (2, a, t) of changes in the real and imaginary parts of dR(z)."""
-        held = np.ones(len(shafts)) if are_places is None else are_places
-        arms = 1j * motions.turns[shafts] * (places - held * self.centres[shafts])
-        arms /= np.maximum(np.abs(motions.correlations[shafts]), TINY)
-        turned = 1j * motions.turns[self.owners] * self.offsets
-        is_own = self._is_of(shafts)
-        parts = [
-            is_own * (unit * held[:, None] / self.counts[self.owners] + part[:, None] * turned)
-            for unit, part in ((1.0, arms.real), (1j, arms.imag))
-        ]
-        return np.array(parts, np.complex128)
 
-    def _is_of(self, shafts: Indices) -> Floats:
-        """Return 1 where a point belongs to a shaft (a,), else 0, float64 (a, t)."""
-        shares: Floats = (shafts[:, None] == self.owners).astype(np.float64)
-        return shares
-
-    def _sums(self, values: Complexes) -> Complexes:
-        """Return the sums (s, …) of values of the points (t, …) of each shaft."""
-        starts = np.searchsorted(self.owners, np.arange(len(self.counts)))
-        sums: Complexes = np.add.reduceat(values, starts, axis=0)
-        return sums
-
-    def _means(self, values: Complexes) -> Complexes:
-        sums = self._sums(values)
-        means: Complexes = sums / self.counts.reshape(-1, *(1,) * (sums.ndim - 1))
-        return means
+def _rows(boundary: Boundary, weights: Complexes, basis_coordinates: Complexes) -> Floats:
+    """Return the rows (…, u) of weights of changes of points."""
+    return by_unknowns(boundary, weights.conj() @ basis_coordinates, weights @ basis_coordinates)

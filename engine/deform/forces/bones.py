@@ -10,7 +10,7 @@ from engine.arrays import Complexes, Floats, Indices, readonly
 from engine.errors import EngineError
 
 # κ L² of a shaft.
-SHAFT_STIFFNESS = 3e4
+SHAFT_STIFFNESS = 1e5
 # A shaft of fewer points has no direction.
 FEWEST_POINTS = 2
 
@@ -101,7 +101,7 @@ class Aims(NamedTuple):
 
 
 class Motions(NamedTuple):
-    """The best rigid motions of an armature's shafts (`engine.deform.forces.armature`).
+    """The best rigid motions of shafts (`engine.deform.forces.rigid_shafts`).
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ class Evaluation:
     positions, fz : complex128, shape (h,)
         The map and f_z at the handles.
     shaft_positions : complex128, shape (t,)
-        The map at the points of the armature's shafts.
+        The map at the points of the armature.
     """
 
     f: Complexes

@@ -32,6 +32,8 @@ AS_NARROW = 1.3
 THIGH, BESIDE_THIGH = 0.2, 1.7
 # Half widths count as at most this part of the length: a trunk is no limb.
 WIDEST = 0.35
+# The same for joints: a leg as thick as long bends all along.
+WIDEST_JOINT = 0.7
 BEYOND_JOINT = 2.5  # half widths; one less is fully part of the joint
 SHORTEST_SHAFT = 0.15  # part of the bone's length
 STATIONS = 49  # places along a bone at which the drawing's width is measured
@@ -42,12 +44,13 @@ INSET = 0.02  # part of the length without stations at each end
 class LimbShape(NamedTuple):
     """The drawing around a bone.
 
-    `half_widths` are those to the left and to the right, in pixels. `limb_range` says from where to
-    where the bone lies in a limb, as parts of its length. `end_part` is the rigid part at the end
-    of a limb's last bone.
+    `half_widths` are those to the left and to the right, in pixels. `joint_width` is their mean for
+    joints, which counts more of a thick limb. `limb_range` says from where to where the bone lies
+    in a limb, as parts of its length. `end_part` is the rigid part at the end of a last bone.
     """
 
     half_widths: Floats
+    joint_width: float
     limb_range: tuple[float, float]
     stations: Floats
     end_part: EndPart | None = None
@@ -55,6 +58,17 @@ class LimbShape(NamedTuple):
     @property
     def half_width(self) -> float:
         return float(self.half_widths.mean())
+
+    @property
+    def root_shares(self) -> list[float]:
+        """Where the limb bends at its root and where it leaves the body, as shares of the bone."""
+        return [0.0, self.limb_range[0]]
+
+    def bending_shares(self, *, has_joint: bool) -> list[float]:
+        """Return where the limb bends at its end: at a joint, or at the neck of its end part."""
+        if has_joint:
+            return [1.0]
+        return [] if self.end_part is None else [self.end_part.neck]
 
 
 def measure_limb(loops: Sequence[Complexes], start: complex, end: complex) -> LimbShape:
@@ -67,7 +81,9 @@ def measure_limb(loops: Sequence[Complexes], start: complex, end: complex) -> Li
     """
     require_bone(loops, start, end)
     length = abs(end - start)
-    widths = np.minimum(measure_half_widths(loops, start, end), WIDEST * length)
+    drawn = measure_half_widths(loops, start, end)
+    widths = np.minimum(drawn, WIDEST * length)
+    joint_width = min(float(drawn.mean()), WIDEST_JOINT * length)
     shares = np.linspace(INSET, 1 - INSET, STATIONS)
     left, right = measure_distances(loops, start, end, shares)
     across = left + right
@@ -76,7 +92,7 @@ def measure_limb(loops: Sequence[Complexes], start: complex, end: complex) -> Li
     found = (float(inside[0]), float(inside[-1])) if len(inside) >= FEWEST_STATIONS else (0.4, 0.6)
     # Narrow stations in the limb come first: a cut across the trunk parts more than the limb.
     narrow = inside[across[is_inside] < AS_NARROW * across[is_inside].min(initial=np.inf)]
-    return LimbShape(widths, found, np.concatenate([narrow, inside, shares]))
+    return LimbShape(widths, joint_width, found, np.concatenate([narrow, inside, shares]))
 
 
 def shaft_points(limb: LimbShape, start: complex, end: complex, *, is_last: bool) -> Complexes:

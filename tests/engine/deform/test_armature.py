@@ -14,8 +14,10 @@ from engine.deform import (
     Hinge,
     Objective,
     Shaft,
+    Ties,
 )
 from engine.deform.model.hessian import hessian_product
+from engine.domain.material.line_ties import BendingPlace, tie_lines
 from engine.errors import EngineError
 from engine.maps import Bounds
 
@@ -25,7 +27,10 @@ ROOT, JOINT, END = -1.8, 0.0, 1.8
 UPPER = np.linspace(-1.8, -0.7, 4).astype(complex)
 LOWER = np.linspace(0.7, 1.8, 4).astype(complex)
 SHAFTS = (Shaft(UPPER, UPPER), Shaft(LOWER, LOWER))
-ARMATURE = Armature.place(BOUNDARY, SHAFTS, [Hinge(0, 1, JOINT, JOINT)])
+TIES = Ties(
+    np.linspace(-0.5, 0.5, 5) + 0.49j, np.linspace(-0.5, 0.5, 5) + 0.4j, np.linspace(1.0, 2.0, 5)
+)
+ARMATURE = Armature.place(BOUNDARY, SHAFTS, [Hinge(0, 1, JOINT, JOINT)], TIES)
 HANDLES = Handles.place(BOUNDARY, np.array([END], complex), None, ARMATURE)
 FREE = Handles.place(BOUNDARY, np.array([END], complex))
 AIMS = (
@@ -50,7 +55,7 @@ def test_a_armature_costs_nothing_after_a_rigid_motion():
     turned = np.exp(0.7j) * BOUNDARY.cage + 0.3
     jet = objective().evaluate(turned, 0 * turned)
     assert ARMATURE.energy(jet.shaft_positions, None) == pytest.approx(0.0, abs=1e-9)
-    moved = ARMATURE.carried(
+    moved = ARMATURE.shafts.carried(
         ARMATURE.motions(jet.shaft_positions), np.array([0, 1]), np.array([JOINT, END + 1j])
     )
     assert_allclose(moved, np.exp(0.7j) * np.array([JOINT, END + 1j]) + 0.3, atol=1e-12)
@@ -89,7 +94,7 @@ def test_the_hessian_of_a_armature_is_that_of_its_product():
 
 def test_the_hessian_of_shafts_is_exact_where_it_is_positive():
     shafts = Armature.place(BOUNDARY, SHAFTS)
-    positions = 1.3 * np.exp(0.2j) * shafts.points + 0.05j * shafts.points**2
+    positions = 1.3 * np.exp(0.2j) * shafts.shafts.points + 0.05j * shafts.shafts.points**2
     rng = np.random.default_rng(6)
     changes = rng.normal(size=len(positions)) + 1j * rng.normal(size=len(positions))
     ahead, behind = (shafts.gradient(positions + by * changes, None) for by in (1e-6, -1e-6))
@@ -107,13 +112,13 @@ def test_a_limb_keeps_its_length_when_its_hand_is_pulled():
     positions = ARMATURE.coordinates @ state.map.columns[0]
     positions = positions + (ARMATURE.coordinates @ state.map.columns[1]).conj()
     motions = ARMATURE.motions(positions)
-    ends = ARMATURE.carried(
+    ends = ARMATURE.shafts.carried(
         motions, np.array([0, 0, 1, 1]), np.array([ROOT, JOINT, JOINT, END], complex)
     )
     assert abs(ends[0] - ROOT) < 0.02
     assert abs(ends[1] - ends[2]) < 0.02
     assert abs(deformer.positions(state)[0] - goal) < 0.02
-    assert np.abs(np.abs(motions.correlations) / ARMATURE.squares - 1.0).max() < 0.03
+    assert np.abs(np.abs(motions.correlations) / ARMATURE.shafts.squares - 1.0).max() < 0.03
     left = targets.released(deformer.positions(state))
     assert left.pulls is None
     assert left.aims is targets.aims
@@ -133,3 +138,38 @@ def test_a_limb_keeps_its_length_when_its_hand_is_pulled():
 def test_a_wrong_armature_is_refused(make, message):
     with pytest.raises(EngineError, match=message):
         make()
+
+
+def bent_bar(ties):
+    """Return the map of a bar bent by 100° at its joint, and its hinge."""
+    axes = [np.linspace(*ends, 5).astype(complex) for ends in ((-1.8, -0.45), (0.45, 1.8))]
+    shafts = [Shaft(axis, axis) for axis in axes]
+    armature = Armature.place(BOUNDARY, shafts, [Hinge(0, 1, JOINT, JOINT)], ties)
+    handles = Handles.place(BOUNDARY, np.array([END], complex), None, armature)
+    ways = 1.8 * np.exp(1j * np.radians([50.0, -50.0]))
+    aims = (Aim(0, ROOT, ROOT), Aim(0, JOINT, ROOT + ways[0], 50.0))
+    targets = handles.targets(np.array([ROOT + ways.sum()]), None, (), aims)
+    deformer = Deformer(
+        boundary=BOUNDARY, handles=handles, bounds=Bounds(k=0.85, sigma_a=4.0, sigma_b=0.15)
+    )
+    state, _ = deformer.settle(deformer.start(), targets)
+    assert state.certificate.is_certified
+    assert state.certificate.sigma_b > 0
+    return state.map, ROOT + ways[0]
+
+
+def test_ties_keep_the_line_of_a_bent_bar_and_round_its_elbow():
+    """A mitre of two straight bones lies 56 % too far outside, and its line is as thick again."""
+    joints = [BendingPlace(JOINT, 0.5)]
+    starts, ends, shares = tie_lines(BOUNDARY.domain.loops, joints)
+    outside = np.linspace(-1.0, 1.0, 81) + 0.5j * (1 - 1e-9)
+    thickness, distance = [], []
+    for ties in (Ties(starts, ends, 0 * shares), Ties(starts, ends, 100 * shares)):
+        shape, elbow = bent_bar(ties)
+        f, g = shape.derivatives(outside)
+        thickness.append(np.abs(1j * f + np.conj(1j * g)).max())
+        distance.append(abs(shape(outside[40:41])[0] - elbow) / 0.5)
+    assert thickness[0] > 2.9
+    assert thickness[1] < 1.95
+    assert distance[0] > 1.6
+    assert 0.7 < distance[1] < 1.1

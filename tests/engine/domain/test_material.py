@@ -7,8 +7,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.domain.material.brush import brush_weights
 from engine.domain.material.limb import limb_weights
+from engine.domain.material.line_ties import DEPTH, BendingPlace, tie_lines
 from engine.domain.material.transfer import copy_nearest_stiffness
 from engine.errors import EngineError
+from engine.geometry import contains
 
 # A trunk, 4 wide and 6 high, with an arm to the right at its top that hangs down along it, .4 away.
 CORNERS = np.array([0, 4, 4 + 5j, 4.4 + 5j, 4.4 + 1j, 5.4 + 1j, 5.4 + 6j, 6j])
@@ -108,3 +110,25 @@ def test_a_limb_ends_at_a_gap_however_narrow_it_is():
     share = limb_weights([points], *ARM, points)
     assert (share[(points.real <= 4.35) & (points.imag < 4.9)] == 0).all()
     assert (share[(points.real >= 4.4) & (points.imag > 2.5) & (points.imag < 4.2)] == 1).all()
+
+
+def test_ties_lie_across_the_line_inside_and_turn_with_the_drawing():
+    loops = [FIGURE[0], HOLE]
+    ties = tie_lines(loops, [BendingPlace(4.9 + 3j, 0.5)])
+    ways = ties.ends - ties.starts
+    assert contains(loops[0], ties.ends, holes=loops[1:]).all()
+    assert_allclose(np.abs(ways), DEPTH * 0.5, rtol=1e-9)
+    assert np.abs(ties.starts - 4.9 - 3j).max() < 1.25
+    whole = sum(np.abs(np.roll(loop, -1) - loop).sum() for loop in loops)
+    assert 0 < ties.shares.sum() < 10 / whole
+    turn, shift = 50 * np.exp(0.3j), 7
+    again = tie_lines(
+        [turn * loop + shift for loop in loops], [BendingPlace(turn * (4.9 + 3j) + shift, 25.0)]
+    )
+    assert_allclose(again.starts, turn * ties.starts + shift, atol=1e-9)
+    assert_allclose(again.ends, turn * ties.ends + shift, atol=1e-9)
+    assert_allclose(again.shares, ties.shares, atol=1e-12)
+
+
+def test_nothing_is_tied_without_joints():
+    assert len(tie_lines(FIGURE, []).shares) == 0

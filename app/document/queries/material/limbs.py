@@ -15,14 +15,18 @@ from app.document.queries.material.local_limits import bones_and_handles, limb_s
 from app.document.queries.memo import memoized_on
 from app.document.rig.chains import Bone, Chain, find_chains
 from engine.arrays import Complexes
-from engine.deform import Armature, Hinge, Shaft
+from engine.deform import Armature, Hinge, Shaft, Ties
 from engine.domain import MeshedDomain
+from engine.domain.material.line_ties import BendingPlace, tie_lines
 from engine.domain.material.shafts import LimbCut, LimbShape, body_points, shaft_points
 from engine.geometry import Similarity
 from engine.maps import Boundary
 
 # κ L² of each point of the rigid part at an end.
-END_STIFFNESS = 1e4
+END_STIFFNESS = 3e4
+# κ of ties across the line, for all outlines. With less, elbows are pointed and their line thick;
+# with more, the limb becomes thin there.
+LINE_STIFFNESS = 100.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,6 +66,7 @@ class Limbs:
 
     limbs: tuple[LimbChain, ...]
     body: Complexes  # points of the outline that belong to no limb
+    ties: Ties  # across the drawn line at joints
 
     @cached_property
     def shafts(self) -> list[Shaft]:
@@ -131,7 +136,7 @@ class Limbs:
 
     def armature_in(self, boundary: Boundary) -> Armature:
         """Return the bones and the ends of limbs, without the body, on a boundary."""
-        return Armature.place(boundary, self.shafts, self.hinges)
+        return Armature.place(boundary, self.shafts, self.hinges, self.ties)
 
 
 def _carry(motion: Similarity, place: complex) -> complex:
@@ -175,4 +180,12 @@ def _limbs_in(
         if limb.parent is None
     ]
     body = body_points(domain.loops, np.concatenate(outline_points(domain)), cuts)
-    return Limbs(limbs=tuple(limbs), body=body)
+    starts = {bone.ends[0] for bone in shapes}
+    bending = [
+        BendingPlace(at[bone.ends[1]], shape.joint_width)
+        for bone, shape in shapes.items()
+        if bone.ends[1] in starts
+    ]
+    lines = tie_lines(domain.loops, bending)
+    ties = Ties(lines.starts, lines.ends, LINE_STIFFNESS * lines.shares)
+    return Limbs(limbs=tuple(limbs), body=body, ties=ties)

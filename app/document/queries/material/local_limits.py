@@ -72,15 +72,10 @@ def joint_shares(layer: Layer, points: Complexes) -> Floats:
     shares = np.zeros(len(points))
     for bone, shape in limb_shapes(layer).items():
         start, end = (layer.handle(identity).position for identity in bone.ends)
-        # A limb also bends where it leaves the body, and at the neck of its end part.
-        bending = [0.0, shape.limb_range[0]]
-        if bone.ends[1] in layer.bone_joints:
-            bending.append(1.0)
-        elif shape.end_part is not None:
-            bending.append(shape.end_part.neck)
-        for share in bending:
+        bending = shape.bending_shares(has_joint=bone.ends[1] in layer.bone_joints)
+        for share in shape.root_shares + bending:
             place = start + share * (end - start)
-            shares = np.maximum(shares, joint_share(points, place, shape.half_width))
+            shares = np.maximum(shares, joint_share(points, place, shape.joint_width))
     return shares
 
 

@@ -1,0 +1,158 @@
+"""Rigid shafts: handfuls of points that stay as they are to each other.
+
+The energy of a shaft with points p is the misfit of the best rigid motion R(z) = c + u z, |u| = 1,
+
+    κ min Σ |f(p_i) − R(p_i)|² = κ (Σ |f̂_i|² + S − 2 |q|),  q = Σ conj(p̂_i) f̂_i,  S = Σ |p̂_i|²,
+
+with p̂ and f̂ less their means; u = q / |q|. It names no place: its forces have no resultant and no
+moment. The gradient at point i is 2 κ (f̂_i − u p̂_i). The Hessian is the constant one of κ Σ |f̂|²
+less 2 κ S / |q| n nᵀ, n = i u p̂ / √S; with min(1/|q|, 1/S) it is positive, the exact projection.
+
+R also moves places that are no point of the shaft, such as a joint. To first order
+
+    dR(z) = mean d + i u (z − mean p) Im(conj(u) Σ conj(p̂_i) d_i) / |q|.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats, Indices, readonly
+from engine.deform.forces.bones import Motions, Shaft
+
+TINY = 1e-300
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RigidShafts:
+    """Several shafts.
+
+    Parameters
+    ----------
+    points : complex128, shape (t,)
+        Of all shafts.
+    owners : intp, shape (t,)
+        The number of each point's shaft.
+    starts : intp, shape (s,)
+        The number of each shaft's first point.
+    offsets : complex128, shape (t,)
+        p̂ of each point.
+    stiffness, squares, counts : float64, shape (s,)
+        κ, S and the number of points of each shaft.
+    centres : complex128, shape (s,)
+        Mean of the rest of each shaft.
+    """
+
+    points: Complexes
+    owners: Indices
+    starts: Indices
+    offsets: Complexes
+    stiffness: Floats
+    squares: Floats
+    counts: Floats
+    centres: Complexes
+
+    @classmethod
+    def place(cls, shafts: Sequence[Shaft], size: float) -> Self:
+        """Place shafts on a shape of size L."""
+        counts = np.array([len(shaft.points) for shaft in shafts])
+        owners = np.repeat(np.arange(len(shafts), dtype=np.intp), counts)
+        centres = np.array([shaft.rest.mean() for shaft in shafts], np.complex128)
+        offsets = np.concatenate([shaft.rest for shaft in shafts]) - centres[owners]
+        points = np.concatenate([shaft.points for shaft in shafts]).astype(np.complex128)
+        return cls(
+            points=readonly(points),
+            owners=readonly(owners),
+            starts=readonly(np.cumsum(counts) - counts),
+            offsets=readonly(offsets),
+            stiffness=readonly(np.array([s.stiffness for s in shafts]) / size**2),
+            squares=readonly(np.asarray(np.bincount(owners, np.abs(offsets) ** 2), np.float64)),
+            counts=readonly(counts.astype(np.float64)),
+            centres=readonly(centres),
+        )
+
+    def softened(self, factor: float) -> Self:
+        """Return the same shafts with `factor` times the stiffness."""
+        return replace(self, stiffness=readonly(factor * self.stiffness))
+
+    def motions(self, positions: Complexes) -> Motions:
+        """Return the best rigid motions with the points (t,) at these positions."""
+        means = self.means(positions)
+        offsets = positions - means[self.owners]
+        correlations = self._sums(self.offsets.conj() * offsets)
+        turns = correlations / np.maximum(np.abs(correlations), TINY)
+        return Motions(offsets, means, correlations, turns)
+
+    def carried(
+        self,
+        motions: Motions,
+        shafts: Indices,
+        places: Complexes,
+        are_places: Floats | float = 1.0,
+    ) -> Complexes:
+        """Return where the motions of shafts (a,) bring places (a,) in their rest.
+
+        Ways, where `are_places` is 0, only turn.
+        """
+        moved: Complexes = are_places * motions.means[shafts] + motions.turns[shafts] * (
+            places - are_places * self.centres[shafts]
+        )
+        return moved
+
+    def energy(self, motions: Motions) -> float:
+        """Return the energy of the shafts."""
+        misfit = self._sums(np.abs(motions.offsets) ** 2).real + self.squares
+        misfit -= 2.0 * np.abs(motions.correlations)
+        return float(self.stiffness @ misfit)
+
+    def gradient(self, motions: Motions) -> Complexes:
+        """Return the gradient of the energy at the points (t,)."""
+        misfits = motions.offsets - motions.turns[self.owners] * self.offsets
+        gradient: Complexes = 2.0 * self.stiffness[self.owners] * misfits
+        return gradient
+
+    def removed_weights(self, motions: Motions) -> Complexes:
+        """Return weights w (s, t): the squares of Re Σ conj(w) d that the Hessian lacks."""
+        inverse = np.minimum(1.0 / np.maximum(np.abs(motions.correlations), TINY), 1 / self.squares)
+        factors = np.sqrt(2.0 * self.stiffness * inverse) * 1j * motions.turns
+        removed: Complexes = self._is_of(np.arange(len(factors), dtype=np.intp)) * (
+            factors[self.owners] * self.offsets
+        )
+        return removed
+
+    def functionals(
+        self,
+        motions: Motions,
+        shafts: Indices,
+        places: Complexes,
+        are_places: Floats | None = None,
+    ) -> Complexes:
+        """Return the weights (2, a, t) of changes in the real and imaginary parts of dR(z)."""
+        held = np.ones(len(shafts)) if are_places is None else are_places
+        arms = 1j * motions.turns[shafts] * (places - held * self.centres[shafts])
+        arms /= np.maximum(np.abs(motions.correlations[shafts]), TINY)
+        turned = 1j * motions.turns[self.owners] * self.offsets
+        is_own = self._is_of(shafts)
+        parts = [
+            is_own * (unit * held[:, None] / self.counts[self.owners] + part[:, None] * turned)
+            for unit, part in ((1.0, arms.real), (1j, arms.imag))
+        ]
+        return np.array(parts, np.complex128)
+
+    def means(self, values: Complexes) -> Complexes:
+        """Return the means (s, …) of values of the points (t, …) of each shaft."""
+        sums = self._sums(values)
+        means: Complexes = sums / self.counts.reshape(-1, *(1,) * (sums.ndim - 1))
+        return means
+
+    def _is_of(self, shafts: Indices) -> Floats:
+        """Return 1 where a point belongs to a shaft (a,), else 0, float64 (a, t)."""
+        shares: Floats = (shafts[:, None] == self.owners).astype(np.float64)
+        return shares
+
+    def _sums(self, values: Complexes) -> Complexes:
+        """Return the sums (s, …) of values of the points (t, …) of each shaft."""
+        sums: Complexes = np.add.reduceat(values, self.starts, axis=0)
+        return sums
