@@ -10,13 +10,22 @@ from harness import Robot
 from PIL import Image, ImageDraw
 from sound_files import sound, wav
 
-from app.document import VOLUME, Channel, Target, channel_commands, sound_commands
+from app.document import (
+    TRANSFORM,
+    VOLUME,
+    Channel,
+    Target,
+    Transform,
+    channel_commands,
+    sound_commands,
+)
 from app.document.commands import handle_commands
+from app.editor import CurvePoint
 from app.editor.actions import dialog_actions, editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import set_targets
-from app.editor.actions.timing import cycles, keys, sounds
+from app.editor.actions.timing import cycles, graph, keys, sounds
 from app.editor.actions.timing.channel_keys import key_camera
 from app.editor.layering.footage import add_footage
 from app.editor.layering.layer_selection import set_active_layer, toggle_tree_row
@@ -79,6 +88,21 @@ def _timing(window: Film, path: Path) -> None:
         robot.yield_(30)
 
     save(window.seen_by(ask).crop((0, 180, *SIZE)), path)
+
+
+def _graph(window: Film, path: Path) -> None:
+    """A dragon that hops, by four keys of its transform, as curves."""
+    project = open_sample(window, "dragon", frame=12)
+    moved = Channel(TRANSFORM, project.layer.id)
+    hops = (Transform(), Transform(60 + 140j, 0.2, 1.1), Transform(130 + 0j, -0.1), Transform())
+    for frame, value in zip((0, 12, 24, 48), hops, strict=True):
+        window.act(editing.edit_document, channel_commands.set_key(moved, frame, value))
+    window.act(graph.toggle_graph)
+    graph.show_channel(window.session, moved, adds=False)
+    window.frames(10)
+    up = graph.shown_curves(project)[1]
+    window.act(graph.select_points, frozenset({CurvePoint(up, 12), CurvePoint(up, 24)}))
+    _still(window, path)
 
 
 def _feet(window: Film, path: Path) -> None:
@@ -334,6 +358,7 @@ STILLS: dict[str, Callable[[Film, Path], None]] = {
     "overview": _overview,
     "welcome": _welcome,
     "timing": _timing,
+    "graph": _graph,
     "feet": _feet,
     "walk": _walk,
     "poses": _poses,
