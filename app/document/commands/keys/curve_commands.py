@@ -86,6 +86,8 @@ def change_velocities(
 ) -> Document:
     """Change the velocities of smooth keys, per frame, by `changes`, by unit."""
     for curve, frame in points:
+        if not changes.get(curve.unit):
+            continue
         index = [key.frame for key in keys_in(document, curve.channel)].index(frame)
         velocity = find_velocity(document, curve, index) + changes[curve.unit]
         changed = with_velocity(document, curve, index, velocity)

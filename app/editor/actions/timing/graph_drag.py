@@ -82,7 +82,8 @@ def _move_points(
     by = 0
     if place.axis != "value" and not drag.is_speed:
         by = drag_offset(before, drag.keys, round(place.frame - drag.start), copies=drag.copies)
-    changes = {unit: place.numbers[unit] - at for unit, at in drag.numbers.items()}
+    units = drag.numbers.keys() & place.numbers.keys()
+    changes = {unit: place.numbers[unit] - drag.numbers[unit] for unit in units}
     if place.axis == "time" or (drag.copies and not by):
         changes = {}
     points = [(each.curve, each.frame) for each in drag.points]
@@ -102,7 +103,7 @@ def _scale_points(session: Session, before: Document, drag: PointScale, place: G
     if drag.fixed_frame is not None:
         longer = 1.0 + (place.frame - drag.start) / drag.length
         scale = TimeScale(drag.fixed_frame, max(longer, LEAST_TIME_FACTOR))
-    for unit in drag.fixed_numbers:
+    for unit in drag.fixed_numbers.keys() & place.numbers.keys():
         # The same for all units, since all of them scale with the window.
         factor = 1.0 + (place.numbers[unit] - drag.numbers[unit]) / drag.heights[unit]
     points = [(each.curve, each.frame) for each in drag.points]
@@ -123,7 +124,9 @@ def _turn_tangent(session: Session, before: Document, drag: TangentDrag, place: 
     curve, frame = drag.point.curve, drag.point.frame
     key = next(each for each in keys_in(before, curve.channel) if each.frame == frame)
     frames = place.frame - display_frame(before, curve.channel, frame)
-    change = place.numbers[curve.unit] - curve.number_at_key(before, key)
+    number = curve.number_at_key(before, key)
+    # A curve that was hidden meanwhile keeps its tangent level.
+    change = place.numbers.get(curve.unit, number) - number
     # Constrained, the tangent is level.
     handle = TangentHandle(
         max(frames if drag.side else -frames, 0.0), change if place.axis is None else 0.0
@@ -143,6 +146,8 @@ def _inside(project: Project, box: PointBox, place: GraphPlace) -> frozenset[Cur
     first, last = sorted((box.start, place.frame))
     found = set(box.points)
     for curve in graph.shown_curves(project):
+        if curve.unit not in box.numbers.keys() & place.numbers.keys():
+            continue
         low, high = sorted((box.numbers[curve.unit], place.numbers[curve.unit]))
         for index, key in enumerate(keys_in(document, curve.channel)):
             at = display_frame(document, curve.channel, key.frame)
