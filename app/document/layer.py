@@ -139,6 +139,8 @@ class Layer:
     # Keys of the parent, each valid from its frame on. An attached layer has an anchor.
     attachments: tuple[Attachment, ...] = ()
     origin: LayerOrigin | None = None  # in a file that can be reloaded
+    # Id of the layer under which its picture was extended by a pixel.
+    closed_seam: int | None = None
     # How many parents bend as bones when the layer is dragged or has an IK target. None counts the
     # parents up to one that has several children.
     ik_parents: int | None = None

@@ -172,11 +172,11 @@ def test_the_fields_of_project_files_are_told():
     }
     source = Path(document_json.__file__).read_text(encoding="utf-8")
     records = {
-        ast.unparse(node.targets[0]): node.value.args
+        ast.unparse(node.targets[0]): getattr(node.value, "args", getattr(node.value, "elts", []))
         for node in ast.parse(source).body
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call)
+        if isinstance(node, ast.Assign)
     }
-    fields = [each for name in ("DOCUMENT", "LAYER") for each in records[name]]
+    fields = [each for name in ("DOCUMENT", "LAYER", "LAYER_FIELDS") for each in records[name]]
     assert told == {each.args[0].value for each in fields if isinstance(each, ast.Call)}
 
 

@@ -62,7 +62,8 @@ def _close_seam(session: Session, project: Project, identity: int) -> None:
                 imported, behind.id, behind.meshing, is_cut_out=True
             )
         resolver = start_picture_replacement(behind, made, grown.corner)
-        return replace(resolver, label=_("Close seam")), picture
+        closed = resolver.new_layer and replace(resolver.new_layer, closed_seam=front.id)
+        return replace(resolver, label=_("Close seam"), new_layer=closed), picture
 
     def done(begun: tuple[KeyResolver, Picture]) -> None:
         resolver, picture = begun

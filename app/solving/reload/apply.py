@@ -10,6 +10,7 @@ from app.errors import join_names
 from app.solving.deform_group.rebuilding import RebuiltGroup, rebuild_group
 from app.solving.reload.file_groups import document_paths, update_groups
 from app.solving.reload.file_settings import (
+    close_seam_again,
     with_file_order,
     with_file_settings,
     with_new_layers,
@@ -18,7 +19,10 @@ from app.solving.reload.file_settings import (
 )
 from app.solving.reload.pictures import PlacedMask, move_cut_out
 from app.solving.reload.plan import Change, LayerChange, ReloadPlan
-from app.solving.reload.replace_picture import distance_notices, start_picture_replacement
+from app.solving.reload.replace_picture import (
+    distance_notices,
+    start_picture_replacement,
+)
 from app.solving.reload.shifting import shift_layer, shift_scene, with_moved_joints
 from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.storage import (
@@ -110,7 +114,10 @@ class Reloading:
 def start_reload(plan: ReloadPlan) -> Reloading:
     """Find the shapes of redrawn and new layers; nothing is solved yet."""
     shifted = replace(plan, document=shift_scene(plan.document, plan.scene_shift))
-    changes = [each for each in plan.changes if each.change not in {Change.SAME, Change.GONE}]
+    shifted = replace(
+        shifted, changes=tuple(close_seam_again(shifted, each) for each in plan.changes)
+    )
+    changes = [each for each in shifted.changes if each.change not in {Change.SAME, Change.GONE}]
     made = run_parallel(
         lambda change: _made(shifted, change),
         changes,

@@ -1,11 +1,16 @@
-"""Settings, names, groups and order of layers that changed in a file."""
+"""Settings, names, groups, order and closed seams of layers that changed in a file."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from PIL import Image
+
 from app.document import Document, DrawingFile, Layer, LayerOrigin, layer_commands
+from app.solving.reload.alignment import PlacedPicture
 from app.solving.reload.file_groups import FileGroups, group_for
+from app.solving.reload.margin import extend_under
 from app.solving.reload.plan import LayerChange, ReloadPlan
+from app.storage import Picture, encode_png
 
 SETTINGS = ("opacity", "blend", "clipped", "hidden")
 
@@ -144,3 +149,33 @@ def _place_of(document: Document, plan: ReloadPlan, index: int) -> int:
     if behind:
         return max(behind)[1] + 1
     return min((place for _index, place in origins), default=len(document.layers))
+
+
+def close_seam_again(plan: ReloadPlan, change: LayerChange) -> LayerChange:
+    """Return the change of a redrawn layer with its picture extended as the earlier one was."""
+    imported = change.imported
+    before = None if change.layer is None else plan.document.find_layer(change.layer)
+    if not change.is_redrawn or imported is None or before is None or before.closed_seam is None:
+        return change
+    front = _placed(plan, before.closed_seam)
+    own = PlacedPicture(imported.picture.rgba, change.corner)
+    grown = None if front is None else extend_under(own, front)
+    if grown is None:
+        return change
+    data = encode_png(Image.fromarray(grown.rgba))
+    picture = Picture(rgba=grown.rgba)
+    return replace(
+        change, imported=replace(imported, data=data, picture=picture), corner=grown.corner
+    )
+
+
+def _placed(plan: ReloadPlan, identity: int) -> PlacedPicture | None:
+    """Return a layer's picture as it is after the reload; None if the layer is gone."""
+    layer = plan.document.find_layer(identity)
+    if layer is None:
+        return None
+    change = next((each for each in plan.changes if each.layer == identity), None)
+    if change is not None and change.is_redrawn and change.imported is not None:
+        return PlacedPicture(change.imported.picture.rgba, change.corner)
+    shift = 0j if change is None else change.shift
+    return PlacedPicture(plan.pictures[identity].rgba, layer.corner + shift)

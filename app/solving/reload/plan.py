@@ -48,6 +48,10 @@ class LayerChange:
     renamed: str = ""  # the new name in the file, if it changed
     regrouped: str | None = None  # the new group in the file, if it changed
 
+    @property
+    def is_redrawn(self) -> bool:
+        return self.change in {Change.REDRAWN, Change.REDRAWN_AND_MOVED}
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ReloadPlan:

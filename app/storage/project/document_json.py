@@ -455,6 +455,7 @@ LAYER_FIELDS = (
     ),
     Field("handovers", list_of(ATTACHMENT), lambda each: each.attachments[1:], default=()),
     Field("origin", optional(ORIGIN), default=None),
+    Field("closed_seam", optional(WHOLE), default=None),
     Field("ik_parents", optional(WHOLE), default=None),
     Field("pole_side", WHOLE, default=0),
 )

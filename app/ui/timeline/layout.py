@@ -33,7 +33,8 @@ NAMES, NAMES_SHARE = 11.0, 0.25  # em: largest width of the names, and as a shar
 SOUND, SOUNDS_SHARE = 1.9, 0.4  # em: height of a sound's lane; all of them, as a share of all
 THIN, TALL = 1.25, 2.8  # em: height of a track's row, and of the row of a single layer
 LEAST_MARK_GAP = 0.4  # em between two marks of a row; closer marks are drawn once
-EVEN, ROOMY = 2.0, 3.4  # em: smallest and largest height of layers' rows
+# em: height of layers' rows: smallest if they do not fit, usual, and largest
+DENSE, EVEN, ROOMY = 1.25, 2.0, 3.4
 
 
 Mark = TypeVar("Mark", bound=HasFrame)
@@ -91,7 +92,7 @@ class TimelineLayout:
         thin, project = THIN * em, self.project
         shown = [self._other_lanes(row.layer) for row in tree if row.layer]
         others = (len(tree) - len(shown) + sum(map(len, shown))) * thin
-        least, most = (EVEN * em, ROOMY * em) if len(tree) > 1 else (min(TALL * em, room), room)
+        least, most = (DENSE * em, ROOMY * em) if len(tree) > 1 else (min(TALL * em, room), room)
         tall = min(max((room - others) / len(shown), least), most)
         overflow = max(others + len(shown) * tall - room, 0.0)
         top = self.track_top - min(self.project.timeline.scrolled * em, overflow)

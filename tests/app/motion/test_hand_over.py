@@ -153,16 +153,16 @@ def test_circles_at_any_frame_are_refused_by_name(hands):
     layers.attach_layer(1, CENTRE, Attachment(parent=0, parent_point=CENTRE, frame=30))(document)
 
 
-def test_it_is_listed_below_what_carries_it_then(hands):
+def test_layer_is_labelled_with_its_parent_at_a_frame(hands):
     document = layers.attach_layer(2, CENTRE, Attachment(parent=None, frame=20))(hands)
     assert [parent_label(document, document.layer(2), frame) for frame in (19, 20)] == [
-        (1, "on 0"),
-        (0, "on nothing…"),
+        "on 0",
+        "on nothing…",
     ]
     document = layers.attach_layer(2, CENTRE, Attachment(parent=1, parent_point=CENTRE, frame=20))(
         chain()
     )
-    assert parent_label(document, document.layer(2), 20) == (2, "on 1")
+    assert parent_label(document, document.layer(2), 20) == "on 1"
 
 
 def test_joints_are_taken_back_moved_and_stretched_in_time(hands):

@@ -59,7 +59,7 @@ DISABLED = {  # while two handles of a bar with two keys are selected
         "Discard recording",
         "Play all frames",
     ),
-    *("Insert key", "Bake repeats", "Stop repeating", "End guide", "Import log"),
+    *("Insert key", "Bake repeats", "Stop repeating", "End guide", "Import log", "Collect footage"),
 }
 HANDLES = {
     *(

@@ -2,6 +2,7 @@
 
 import os
 
+import numpy as np
 import pytest
 from layered import blob, openraster
 from PIL import ImageDraw
@@ -14,13 +15,13 @@ from app.editor.parts.dialogs import FileDialog, ReloadDialog
 from app.storage import save_project
 
 
-def write(path, *, arm=None, left=100, at=1):
+def write(path, *, arm=None, body=None, left=100, at=1):
     """Write a drawing with an arm in front of a body, changed at this second."""
     stack = (
         f'<layer name="arm" src="data/0.png" x="{left}" y="60"/>'
         '<layer name="body" src="data/1.png" x="40" y="40"/>'
     )
-    pictures = [arm or blob(90, 30), blob(80, 130, (30, 60, 200))]
+    pictures = [arm or blob(90, 30), body or blob(80, 130, (30, 60, 200))]
     path.write_bytes(openraster((240, 200), stack, pictures))
     os.utime(path, (at, at))
 
@@ -39,6 +40,31 @@ def project(window, tmp_path):
     window.act(editing.edit_document, handle_commands.add_handle(arm, 120 + 125j))
     window.settle()
     return project
+
+
+def test_redrawn_layer_keeps_its_closed_seam(window, project, tmp_path):
+    body, arm = project.document.layers
+    joint = Attachment(parent=body.id, parent_point=110 + 120j)
+    window.act(editing.edit_document, layer_commands.attach_layer(arm.id, 110 + 120j, joint))
+    window.act(close_seam, arm.id)
+    window.settle()
+    changed = blob(80, 130, (30, 60, 200))
+    ImageDraw.Draw(changed).rectangle((20, 40, 60, 70), fill=(250, 240, 20, 255))
+    write(tmp_path / "man.ora", body=changed, at=9)
+    window.act(reloading.reload_drawing)
+    window.settle()
+    window.act(reloading.begin_reload, window.session.dialogs.current)
+    window.settle()
+    wide = project.document.layers[0]
+    assert wide.closed_seam == arm.id
+    assert wide.picture.size == (82, 132)
+    assert wide.corner == body.corner - 1 - 1j
+    pixels = project.runtimes.layers[body.id].picture.rgba
+    assert tuple(pixels[56, 41]) == (250, 240, 20, 255)
+    # Under the arm it reaches a pixel farther than in the file.
+    own = np.pad(np.asarray(changed), ((1, 1), (1, 1), (0, 0)))
+    assert (pixels[..., 3] >= own[..., 3]).all()
+    assert (pixels[..., 3] > own[..., 3]).any()
 
 
 def look(window):

@@ -67,22 +67,22 @@ def layer_tree(
     return tuple(listed)
 
 
-def parent_label(document: Document, layer: Layer, frame: float) -> tuple[int, str]:
-    """Return the number of a layer's ancestors at a frame, and a label with its parent.
+def parent_label(document: Document, layer: Layer, frame: float) -> str:
+    """Return a label with a layer's parent at a frame.
 
     The label is empty for a layer that never has a parent. An ellipsis stands for other parents at
     other frames. A member of a deform group is labelled with its group.
     """
     if layer.deform_group is not None:
-        return 0, _("bends with {group}").format(group=document.deform_layer(layer).name)
+        return _("bends with {group}").format(group=document.deform_layer(layer).name)
     parents = {joint.parent for joint in layer.attachments if joint.parent is not None}
     ancestors = document.parent_chain(layer.id, frame)[1:]
     if not parents:
-        return 0, ""
+        return ""
     now = ancestors[0].name if ancestors else _("nothing")
     others = parents - {each.id for each in ancestors[:1]}
     label = _("on {parent}…") if others else _("on {parent}")
-    return len(ancestors), label.format(parent=now)
+    return label.format(parent=now)
 
 
 _Place = Group | SwitchGroup

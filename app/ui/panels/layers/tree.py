@@ -163,8 +163,9 @@ def _row(
     imgui.set_cursor_screen_pos(ImVec2(corner.x, middle - imgui.get_frame_height() / 2))
     frame = playback.current_frame(session, project)
     actions += draw_row_switches(look, project, row, frame)
-    level, detail = (0, "") if layer is None else parent_label(project.document, layer, frame)
-    depth = min(row.depth + level, DEEPEST_INDENT)
+    detail = "" if layer is None else parent_label(project.document, layer, frame)
+    # Indents are those of groups; a sign and a label tell the parent.
+    depth = min(row.depth, DEEPEST_INDENT)
     left = imgui.get_item_rect_max().x + (GAP + INDENT * depth) * em
     is_seen = _is_seen(project, row, frame)
     shown = _shown(project.document, row, frame)

@@ -95,7 +95,7 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
                 colour_u32(palette.accent, CHOSEN) if row.is_active else colour_u32(palette.hovered)
             )
             draw_list.add_rect_filled(*box, colour, 0.2 * em)
-        depth, parent = parent_label(document, row.layer, frame)
+        parent = parent_label(document, row.layer, frame)
         if begin_tooltip():
             imgui.text_unformatted(row.layer.name)
             if parent:
@@ -103,7 +103,8 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
             imgui.end_tooltip()
         icon = icons.ICON_FA_IMAGE if row.layer.still else icons.ICON_FA_PERSON
         colour = colour_u32(palette.text if is_visible(document, row.layer, frame) else palette.dim)
-        indent = low.x + INDENT * min(row.depth + depth, DEEPEST_INDENT) * em
+        # Indents are those of groups; a sign and a label tell the parent.
+        indent = low.x + INDENT * min(row.depth, DEEPEST_INDENT) * em
         with push_text_size(SMALL):
             left = indent + (1.8 + EXPANDER_WIDTH * has_lanes(row.layer)) * em
             room = box[1].x - left - 0.8 * em
@@ -113,7 +114,8 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
             draw_list.add_text(ImVec2(left, top), colour, text)
             taken = imgui.calc_text_size(text).x + 0.5 * em
             if parent and room - taken > LEAST_PARENT_ROOM * em:
-                label = shorten_text(parent, room - taken)
+                link = icons.ICON_FA_LINK if row.layer.has_parent else ""
+                label = shorten_text(f"{link} {parent}".strip(), room - taken)
                 draw_list.add_text(ImVec2(left + taken, top), colour_u32(palette.dim), label)
         actions += draw_expander(bands, row, indent)
     actions += draw_group_names(bands, frame)
