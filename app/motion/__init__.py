@@ -53,6 +53,7 @@ from app.motion.meshes.vertices import (
 )
 from app.motion.parenting.attach import (
     anchor_or_default as anchor_or_default,
+    attach_as_drawn as attach_as_drawn,
     attach_in_place as attach_in_place,
     reparent_in_place as reparent_in_place,
 )

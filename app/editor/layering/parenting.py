@@ -25,6 +25,7 @@ from app.editor.work.jobs import JobKind
 from app.motion import (
     ParentTransforms,
     anchor_or_default,
+    attach_as_drawn,
     attach_in_place as joint_at_rest,
     reparent_in_place as joint_that_keeps,
 )
@@ -54,7 +55,10 @@ def attach_layer(
     turns: bool = True,  # noqa: FBT001, FBT002 - of an action
     place: complex | None = None,
 ) -> None:
-    """Attach a layer by its anchor to a parent; nothing moves at the present frame.
+    """Attach a layer by its anchor to a parent.
+
+    A layer without a pose of its own is joined as it is drawn, if the drawings overlap. Others do
+    not move at the present frame.
 
     Parameters
     ----------
@@ -75,7 +79,8 @@ def attach_layer(
     frame = playback.current_frame(session, project)
 
     def find(joints: ParentTransforms) -> Command:
-        held = joint_at_rest(joints, child, parent, frame, place=place, turns=turns)
+        drawn = None if place is not None else attach_as_drawn(joints, child, parent, turns=turns)
+        held = drawn or joint_at_rest(joints, child, parent, frame, place=place, turns=turns)
         return layer_commands.attach_layer(child, *held)
 
     joining = do(_attach, (child, parent), find)
@@ -102,8 +107,15 @@ def attach_layers(session: Session, project: Project, parent: int, *children: in
         return
 
     def find(joints: ParentTransforms) -> Command:
-        held = [(child, joint_at_rest(joints, child, parent, frame, turns=True)) for child in free]
-        attached = [layer_commands.attach_layer(child, *joint) for child, joint in held]
+        held = [
+            attach_as_drawn(joints, child, parent, turns=True)
+            or joint_at_rest(joints, child, parent, frame, turns=True)
+            for child in free
+        ]
+        attached = [
+            layer_commands.attach_layer(child, *joint)
+            for child, joint in zip(free, held, strict=True)
+        ]
         label = ngettext("Attach {count} layer", "Attach {count} layers", len(free))
         return combine_commands(label.format(count=len(free)), attached)
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from app.document import Attachment, Layer
+from app.document import TRANSFORM, Attachment, Layer, rest_pose
 from app.errors import LissomError
 from app.motion.parenting.chain import PivotFrame, pivot_frame_at
 from app.motion.parenting.parent_transforms import ParentTransforms
 from app.texts import _
-from engine.arrays import Complexes
+from engine.arrays import Booleans, Complexes
 from engine.errors import EngineError
 from engine.geometry import contains, deepest_point, diameter
 from engine.interpolation import Frame
@@ -17,6 +17,32 @@ MAX_STEPS = 20
 NEWTON_TOLERANCE = 1e-12  # fraction of the layer's size
 SAME_SCALE = 1e-9
 MAX_STARTS = 2_000  # largest number of triangles searched for a start
+
+
+def attach_as_drawn(
+    joints: ParentTransforms, child: int, parent: int, *, turns: bool
+) -> tuple[complex, Attachment] | None:
+    """Return the child's anchor and the attachment that join two layers as they are drawn.
+
+    None if the child has a pose, a transform or a parent of its own, or if the drawings do not
+    overlap.
+    """
+    own, other = joints.document.layer(child), joints.document.layer(parent)
+    rest = rest_pose(own.domain, ())
+    is_posed = any(
+        not (np.array_equal(pose.phi, rest.phi) and np.array_equal(pose.psi, rest.psi))
+        for pose in own.poses
+    )
+    if is_posed or own.tracks or own.attachments or own.keys_of(TRANSFORM):
+        return None
+    points = np.array([anchor_or_default(own), *_middles(own)])
+    common = contains(other.domain.outline, points)
+    for hole in other.domain.loops[1:]:
+        common &= ~contains(hole, points)
+    if not common.any():
+        return None
+    place = complex(points[_common_index(points, common)])
+    return place, Attachment(parent=parent, parent_point=place, inherits_rotation=turns)
 
 
 def attach_in_place(
@@ -117,11 +143,15 @@ def _common_point(joints: ParentTransforms, child: Layer, parent: Layer, frame: 
     places = here.apply(_moved(joints, child, points, frame).positions)
     border = there.apply(_moved(joints, parent, parent.domain.outline, frame).positions)
     common = contains(border, places)
-    if common[0] or not common.any():
-        return anchor
+    return complex(points[_common_index(places, common)]) if common.any() else anchor
+
+
+def _common_index(places: Complexes, common: Booleans) -> int:
+    """Return the first place if it is common, else the one in the middle of all that are."""
+    if common[0]:
+        return 0
     middle = places[common].mean()
-    nearest = np.argmin(np.where(common, np.abs(places - middle), np.inf))
-    return complex(points[nearest])
+    return int(np.argmin(np.where(common, np.abs(places - middle), np.inf)))
 
 
 def _point_near(

@@ -14,6 +14,7 @@ from app.document import (
     key_commands,
     layer_commands as layers,
     pose_channel,
+    rest_pose,
     scene_commands,
 )
 from app.errors import LissomError
@@ -23,6 +24,7 @@ from app.motion import (
     InbetweenCache,
     ParentTransforms,
     StreamedVertices,
+    attach_as_drawn,
     attach_in_place,
 )
 from app.motion.parenting.parent_transforms import BATCH
@@ -107,6 +109,24 @@ def test_attaching_moves_nothing_at_the_present_frame(frame, turns):
     assert_allclose(seen(attached, 2, frame), seen(loose, 2, frame, before), rtol=0, atol=1e-8)
     by_anchor = attach_in_place(before, 2, 0, frame, turns=turns)
     assert abs(by_anchor[0] - document.layer(2).anchor) < 1e-12
+
+
+def test_a_layer_without_a_pose_is_joined_as_it_is_drawn():
+    loose = layers.detach_layer(1, 1, 0)(chain(count=2))
+    posed = loose.layer(1)
+    still = replace(posed.keys[0], pose=rest_pose(posed.domain, ()))
+    document = loose.with_layer(replace(posed, keys=(still,)))
+    anchor, joint = attach_as_drawn(ParentTransforms(document), 1, 0, turns=True)
+    assert joint.parent_point == anchor == posed.anchor
+    attached = layers.attach_layer(1, anchor, joint)(document)
+    for frame in (0, 20, 33.5):
+        at, fz = exactly(document, 0, anchor, frame)
+        placed = ParentTransforms(attached).placement(1, frame)
+        assert abs(placed.apply(np.array([anchor]))[0] - at) < 1e-9
+        assert abs(placed.factor - fz / abs(fz)) < 1e-9
+    # What has a pose, or a parent, stays where it is shown.
+    assert attach_as_drawn(ParentTransforms(loose), 1, 0, turns=True) is None
+    assert attach_as_drawn(ParentTransforms(attached), 1, 0, turns=True) is None
 
 
 def test_detaching_moves_nothing_at_the_present_frame():
