@@ -275,6 +275,7 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
 def swung(window, scene):
     """The arm is attached to the body, which turns; a motion path and ghosts are shown."""
     arm, body = identity(scene, "arm"), identity(scene, "body")
+    window.act(add_handle, PALM)
     layer = scene.document.layer(body)
     pose = layer.keys[0].pose
     turned = replace(pose, phi=100 + (layer.domain.cage - 100) * np.exp(0.3j))
@@ -285,7 +286,6 @@ def swung(window, scene):
     window.act(editing.edit_document, joint)
     window.act(playback.seek, 24)
     window.settle()
-    window.act(add_handle, PALM)
     for overlay in ("paths", "onion"):
         window.act(viewing.toggle_overlay, overlay)
     # The Export tab, which another test may have left in front, marks the frame of an export.
