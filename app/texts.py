@@ -17,6 +17,7 @@ import os
 import re
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import cast
@@ -70,7 +71,7 @@ def list_languages() -> dict[str, str]:
     """Return the languages that Lissom speaks: what each calls itself, by code, English first."""
     found = {ENGLISH: "English"}
     for path in sorted(LOCALE.glob("*.po")):
-        with path.open(encoding="utf-8") as file:
+        with path.open(encoding="utf-8", errors="replace") as file:
             name = re.search(r"X-Language-Name: (.*?)\\n", file.read(2_000))
         found[path.stem] = name[1] if name else path.stem
     return found
@@ -92,7 +93,8 @@ class _Translations(gettext.NullTranslations):
 
     def ngettext(self, msgid1: str, msgid2: str, n: int) -> str:
         forms = self._texts.get(msgid1)
-        return (forms and forms[self._form(n)]) or (msgid1 if n == 1 else msgid2)
+        form = self._form(n)
+        return forms[form] if forms and form < len(forms) else (msgid1 if n == 1 else msgid2)
 
     def source_of(self, text: str) -> str:
         return next((one for one, forms in self._texts.items() if forms[0] == text), text)
@@ -158,7 +160,9 @@ def _translations() -> gettext.NullTranslations:
                 return gettext.NullTranslations()
             path = LOCALE / f"{name}.po"
             if re.fullmatch(r"\w+", name) and path.is_file():
-                return _Translations(path)
+                # A file that a person is writing may be damaged.
+                with suppress(OSError, ValueError):
+                    return _Translations(path)
     return gettext.NullTranslations()
 
 

@@ -120,6 +120,19 @@ def test_language_of_the_system(monkeypatch, variables, codes):
     assert read_system_languages() == codes
 
 
+@pytest.mark.parametrize(
+    "content", [b"\xff\xfe", b'msgid ""\nmsgstr ""\n"plural=(n;\\n"\n', b"", b"msgid"]
+)
+def test_a_damaged_file_leaves_the_texts_english(nowhere, monkeypatch, content):
+    (nowhere / "xx.po").write_bytes(content)
+    monkeypatch.setattr(texts, "LOCALE", nowhere)
+    monkeypatch.setenv("LISSOM_LANGUAGE", "xx")
+    assert texts._translations().ngettext("{count} key", "{count} keys", 2) == "{count} keys"
+    list_languages.cache_clear()
+    assert list_languages()["xx"] == "xx"
+    list_languages.cache_clear()
+
+
 def test_preferences_come_before_the_system_and_a_variable_before_both(nowhere, monkeypatch):
     def is_english():
         return texts._translations().gettext("Undo") == "Undo"
