@@ -102,11 +102,15 @@ class FileBrowser:
         imgui.same_line()
         if imgui.button(_("Cancel"), ImVec2(BUTTON * look.em, 0)):
             return [do(close_dialog)]
+        name, note = now.name.strip() if path is None else path.name, ""
         if path is not None and now.writes and is_there(Path.is_file, path):
+            note = _("{name} will be replaced.")
+        elif name and not possible:
+            note = _("There is no {name} here.")
+        if note:
             imgui.same_line()
             imgui.align_text_to_frame_padding()
-            text = _("{name} will be replaced.").format(name=display_name(path.name))
-            imgui.text_colored(look.palette.warning, text)
+            imgui.text_colored(look.palette.warning, note.format(name=display_name(name)))
         if is_accepted and folder is not None:
             now = enter_folder(now, folder)
         elif is_accepted and path is not None:
