@@ -11,8 +11,8 @@ const float EXACT_ZONE = 1.0 / 64.0;
 // Our own anisotropic filter: the filter of Mesa's drivers frays edges, also enlarged ones.
 const float MOST_TAPS = 8.0;
 
-vec4 picture_at(vec2 uv) {
-    ivec2 size = textureSize(picture, 0);
+vec4 picture_of(sampler2D source, vec2 uv) {
+    ivec2 size = textureSize(source, 0);
     vec2 texels = vec2(size);
     vec2 place = uv * texels - 0.5;
     vec2 step_x = dFdx(place);
@@ -28,7 +28,7 @@ vec4 picture_at(vec2 uv) {
     if (offset == vec2(0.0) && longest < 1.2) {
         ivec2 pixel = ivec2(centre);
         bool inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
-        return inside ? texelFetch(picture, pixel, 0) : vec4(0.0);
+        return inside ? texelFetch(source, pixel, 0) : vec4(0.0);
     }
 
     // Samples side by side along the pixel's footprint, each as wide as the footprint is narrow.
@@ -41,7 +41,11 @@ vec4 picture_at(vec2 uv) {
     vec2 first = (centre + offset + 0.5) / texels - 0.5 * float(taps - 1) * stride;
     vec4 sum = vec4(0.0);
     for (int k = 0; k < taps; ++k) {
-        sum += textureLod(picture, first + float(k) * stride, level);
+        sum += textureLod(source, first + float(k) * stride, level);
     }
     return sum / float(taps);
+}
+
+vec4 picture_at(vec2 uv) {
+    return picture_of(picture, uv);
 }

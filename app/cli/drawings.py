@@ -61,6 +61,7 @@ def save_drawing(path: Path, opened: OpenedScene, document: Document) -> None:
     textures = {
         layer.id: cut_picture(opened.pictures[layer.id], layer.cut_out).texture
         for layer in document.layers
+        if not document.is_deform_group(layer.id)
     }
     picture = flatten_layers(document, textures)
     save_project(path, document, thumbnail=draw_thumbnail(picture))

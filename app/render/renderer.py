@@ -15,6 +15,7 @@ from app.render.colormap import heat_colormap
 from app.render.gpu.mesh import PosedMesh
 from app.render.gpu.programs import Programs, ShaderFiles
 from app.render.gpu.target import RenderTarget
+from app.render.members import draw_members, split_runs
 from app.render.overlay import Overlay
 from app.render.scene import Backdrop, Colour, Heat, Painted, Scene, Wireframe
 from app.render.view import View
@@ -139,8 +140,11 @@ class Renderer:
         depth: int = 0,
     ) -> None:
         self._blend_over()
-        for part in parts:
-            if isinstance(part, CompositeGroup):
+        # A heat map shows one mesh at a time.
+        for part in split_runs(parts) if heat is None else parts:
+            if isinstance(part, list):
+                draw_members(part, view.uniforms)
+            elif isinstance(part, CompositeGroup):
                 self._draw_layer(part, target, view, heat=heat, depth=depth)
                 self._blend_over()
             else:

@@ -30,9 +30,12 @@ from app.document import (
 )
 from app.errors import LissomError, join_names
 from app.motion import ParentTransforms, anchor_or_default, reparent_in_place
+from app.solving.deform_group.bending import bend_as_one
 from app.solving.script.layers import ScriptAttachment
 from app.solving.script.pose_script import LayerScript, PoseScript
-from app.texts import _
+from app.storage import decode_picture
+from app.texts import _, message_of
+from engine.errors import EngineError
 
 
 def find_layer(document: Document, name: str) -> Layer:
@@ -52,6 +55,28 @@ def find_member(document: Document, name: str) -> SwitchMember:
         is_layer = any(layer.name == name for layer in document.layers)
         return find_layer(document, name).id if is_layer else name
     return find_layer(document, name).id
+
+
+def with_deform_groups(document: Document, script: PoseScript) -> Document:
+    """Return a document in which the script's layers bend as one; each group is a new layer."""
+    for part in script.layers:
+        if not part.members:
+            continue
+        try:
+            members = [find_layer(document, name) for name in part.members]
+            pictures = {each.id: decode_picture(each.picture.data, each.name) for each in members}
+            made = bend_as_one(document, pictures.keys(), pictures, name=part.layer)
+        except (LissomError, EngineError) as error:
+            raise LissomError(
+                _("layers {layers}: {error}").format(
+                    layers=join_names(part.members), error=message_of(error)
+                )
+            ) from error
+        if part.layer in {layer.name for layer in document.layers}:
+            text = _("the group of {layers} needs a name of its own, not {name!r}")
+            raise LissomError(text.format(layers=join_names(part.members), name=part.layer))
+        document = made.command(document)
+    return document
 
 
 def with_attachments(document: Document, identity: int, part: LayerScript) -> Document:
@@ -77,6 +102,7 @@ def with_attachments(document: Document, identity: int, part: LayerScript) -> Do
 
 def _attachment(document: Document, joint: ScriptAttachment, anchor: complex) -> Attachment:
     at, parent = joint.at, None if joint.to is None else find_layer(document, joint.to)
+    parent = parent and document.deform_layer(parent)
     if parent is not None and at is None:
         at = complex(parent.domain.nearest(np.array([anchor]))[0])
     elif parent is not None and at is not None and not parent.covers(np.array([at])).all():
@@ -104,7 +130,8 @@ def with_world_transforms(document: Document, script: PoseScript) -> Document:
         for joint in part.attach:
             if part.layer is None or joint.to is None or joint.at is not None:
                 continue
-            child, parent = find_layer(document, part.layer), find_layer(document, joint.to)
+            child = find_layer(document, part.layer)
+            parent = document.deform_layer(find_layer(document, joint.to))
             nearest = reparent_in_place(
                 ParentTransforms(document), child.id, parent.id, joint.frame, turns=joint.turns
             )

@@ -35,6 +35,7 @@ from app.solving.script_scene import (
     warn_unused_cycles,
     warn_unused_switches,
     with_attachments,
+    with_deform_groups,
     with_switch_groups,
     with_world_transforms,
 )
@@ -58,6 +59,7 @@ def pose_document(
     description of each step. Raises a `LissomError` or `EngineError` if a layer is missing or
     attached to itself, or if a point lies outside its shape.
     """
+    document = with_deform_groups(document, script)
     named, notices = _by_layer(document, script), list[str]()
     document = replace(
         document,
@@ -145,6 +147,10 @@ def _by_layer(document: Document, script: PoseScript) -> dict[int, LayerScript]:
         else:
             layer = find_layer(document, part.layer)
         is_posed = bool(part.handles) or len(part.keys) > 1 or part.layer is None
+        if layer is not None and layer.deform_group is not None and is_posed:
+            text = _("{layer!r} bends with {group!r}; give that entry the handles and keys")
+            group = document.deform_layer(layer).name
+            raise LissomError(text.format(layer=layer.name, group=group))
         if layer is None or (layer.still and is_posed):
             raise LissomError(
                 _(

@@ -112,6 +112,7 @@ class GpuMesh:
         self.picture = picture
         self.count = len(rest)
         self.seam = seam
+        self.first = complex(rest[0])  # the first vertex, which tells pictures' corners apart
         if seam is not None:
             rest = seam.close_cuts(rest)
         context = programs.context
@@ -158,17 +159,31 @@ class PosedMesh:
         self, mesh: GpuMesh, source: VertexSource, *, shared_order: PaintingOrder | None = None
     ) -> None:
         self.picture = mesh.picture
+        self.first = mesh.first
         self._placement = (1.0, 0.0, 0.0, 0.0)
         self._mesh = mesh
-        self._source = source
+        self.source = source
         self._is_owner = shared_order is None
-        self._order = shared_order or PaintingOrder(mesh)
+        self.order = shared_order or PaintingOrder(mesh)
         self._heat: moderngl.Buffer | None = None
         self._bindings: dict[ShaderFiles, moderngl.VertexArray] = {}
 
     def sharing(self, mesh: GpuMesh) -> "PosedMesh":
         """Return the same pose of another picture, on a mesh with the same vertices."""
-        return PosedMesh(mesh, self._source, shared_order=self._order)
+        return PosedMesh(mesh, self.source, shared_order=self.order)
+
+    def has_vertices_of(self, other: "PosedMesh") -> bool:
+        """Return whether both poses share their vertices and their draw order."""
+        return self.source is other.source and self.order is other.order
+
+    def window_in(self, other: "PosedMesh") -> tuple[float, float, float, float]:
+        """Return the factors and offsets from another pose's texture coordinates to this one's.
+
+        Both share their vertices.
+        """
+        (width, height), (x, y) = self.picture.size, other.picture.size
+        by = self.first - other.first
+        return x / width, y / height, by.real / width, by.imag / height
 
     def write_heat(self, values: Singles) -> None:
         """Upload the quantity (v,) of the heat map."""
@@ -184,13 +199,13 @@ class PosedMesh:
 
         There may be at most as many as the mesh has.
         """
-        if triangles is self._order.triangles:
+        if triangles is self.order.triangles:
             return
         most = len(self._mesh.triangles)
         if len(triangles) > most:
             text = _("the mesh can have at most {most} visible triangles, not {count}")
             raise LissomError(text.format(most=most, count=len(triangles)))
-        self._order.write(triangles)
+        self.order.write(triangles)
 
     def place(self, factor: complex, shift: complex) -> None:
         """Draw every vertex z at factor · z + shift."""
@@ -198,8 +213,8 @@ class PosedMesh:
 
     def draw(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the triangles with a mesh program: its files, and the source's shader."""
-        binding = self._bound(files, self._order.buffer, uniforms)
-        binding.render(moderngl.TRIANGLES, vertices=self._order.triangles.size)
+        binding = self._bound(files, self.order.buffer, uniforms)
+        binding.render(moderngl.TRIANGLES, vertices=self.order.triangles.size)
 
     def draw_border(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the edges of the border with a program of their own."""
@@ -208,10 +223,10 @@ class PosedMesh:
     def _bound(
         self, files: ShaderFiles, indices: moderngl.Buffer, uniforms: Mapping[str, object]
     ) -> moderngl.VertexArray:
-        source = self._source
+        source = self.source
         if files not in self._bindings:
             vertex = (*files.vertex, source.shader)
-            linked = replace(files, vertex=vertex, constants=source.constants)
+            linked = replace(files, vertex=vertex, constants=(*files.constants, *source.constants))
             self._bindings[files] = self._bind(self._mesh.programs.get(linked), indices)
         bound = self._bindings[files]
         own = {"placement": self._placement, **source.uniforms}
@@ -221,7 +236,7 @@ class PosedMesh:
     def _bind(self, program: moderngl.Program, indices: moderngl.Buffer) -> moderngl.VertexArray:
         if "heat" in program and self._heat is None:
             raise ValueError("a heat map is to be drawn of a pose that was given no values")
-        available = [self._source.attribute, (self._mesh.uv, "2f", "uv")]
+        available = [self.source.attribute, (self._mesh.uv, "2f", "uv")]
         if self._heat is not None:
             available.append((self._heat, "1f", "heat"))
         # A compiler drops unused attributes of a program.
@@ -238,8 +253,8 @@ class PosedMesh:
         if self._heat is not None:
             self._heat.release()
         if self._is_owner:
-            self._order.buffer.release()
-            self._source.release()
+            self.order.buffer.release()
+            self.source.release()
 
 
 def _indices(triangles: Integers) -> bytes:

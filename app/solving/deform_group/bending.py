@@ -11,7 +11,6 @@ from app.document import (
     Command,
     Document,
     Layer,
-    Meshing,
     deform_group_commands,
     layer_commands,
 )
@@ -59,14 +58,13 @@ def bend_as_one(
     document: Document,
     identities: Iterable[int],
     pictures: Mapping[int, Picture],
-    meshing: Meshing | None = None,
     name: str | None = None,
 ) -> BendingAsOne:
     """Return the deform group of these layers; all is computed at once.
 
     The group takes over the handles, keys and parents of the member with the most keys and
-    handles. `pictures` are those of the layers, by id. Raises `LissomError` if the layers cannot
-    be members, or have no common shape.
+    handles, and the finest mesh. `pictures` are those of the layers, by id. Raises `LissomError`
+    if the layers cannot be members, or have no common shape.
     """
     chosen = set(identities)
     members = tuple(layer for layer in document.layers if layer.id in chosen)
@@ -79,8 +77,9 @@ def bend_as_one(
     identity = layer_commands.next_layer_id(document)
     title = name or _("{layer} and others").format(layer=(heir or members[0]).name)
     imported = ImportedLayer(name=title, data=data, picture=picture)
-    detail = meshing or (heir.meshing if heir else None)
-    made, found = make_posable_layer(imported, identity, detail, is_cut_out=True)
+    posable = [each.meshing for each in members if not each.still]
+    finest = max(posable, key=lambda each: each.triangles, default=None)
+    made, found = make_posable_layer(imported, identity, finest, is_cut_out=True)
     if made.still:
         reasons = "; ".join(map(message_of, found))
         raise LissomError(_("they have no shape to bend ({reasons})").format(reasons=reasons))

@@ -84,6 +84,18 @@ def parse_limbs(content: object, names: Sequence[str | None]) -> tuple[ScriptLim
     return tuple(limbs)
 
 
+def parse_members(content: object, where: str) -> tuple[str, ...]:
+    """Return the names of layers that bend as one."""
+    names = tuple(as_text(each, where) for each in as_list(content, where))
+    if len(names) < 2 or len({*names}) < len(names):
+        raise LissomError(
+            _("{where} must name at least two different layers that bend as one").format(
+                where=where
+            )
+        )
+    return names
+
+
 def parse_attachments(content: object, where: str) -> tuple[ScriptAttachment, ...]:
     """Return the attachments of a layer: one object or a list."""
     if not isinstance(content, list):

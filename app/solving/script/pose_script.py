@@ -35,6 +35,7 @@ from app.solving.script.layers import (
     parse_attachments,
     parse_canvas,
     parse_limbs,
+    parse_members,
     parse_switch_groups,
 )
 from app.solving.script.material import StiffRegion, parse_bones, parse_material
@@ -65,6 +66,8 @@ MOVING_FIELDS = (
 OWN_FIELDS = ("anchor", "handles", "bones", *MOVING_FIELDS, "stiff")
 STAGE_FIELDS = ("layers", "choices", "bones")
 LAYER_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
+# An entry of several layers that bend as one has "layers", and may name their group by "layer".
+GROUP_FIELDS = ("layers", *(name for name in LAYER_FIELDS if name not in {"opacity", "order"}))
 # What an entry of a layer may leave out, such as a mouth that moves with its parent.
 RESTING: Mapping[str, object] = {"handles": {}, "keys": [{"frame": 0}]}
 HANDLE_FIELDS = ("at", "front", "extent", "still")
@@ -92,6 +95,7 @@ class LayerScript:
     """
 
     layer: str | None = None
+    members: tuple[str, ...] = ()  # names of the layers that bend as one, as the group `layer`
     handles: Mapping[str, ScriptHandle]
     keys: tuple[PoseKey, ...]
     variant: Variant = Variant.METRIC
@@ -173,7 +177,9 @@ def parse_pose_script(content: object) -> PoseScript:
     layers = [] if "layers" in script else [_layer(script, "", usual, loop=loop)]
     for index, entry in enumerate(as_list(script.get("layers", []), "layers")):
         where = f"layers[{index}]."
-        own_fields = {**RESTING, **read_fields(entry, where[:-1], LAYER_FIELDS)}
+        is_group = isinstance(entry, dict) and "layers" in entry
+        fields = GROUP_FIELDS if is_group else LAYER_FIELDS
+        own_fields = {**RESTING, **read_fields(entry, where[:-1], fields)}
         layers.append(_layer(as_object(own_fields, where[:-1]), where, usual, loop=loop))
     names = [layer.layer for layer in layers]
     check_distinct_layers(names)
@@ -200,7 +206,12 @@ def _layer(script: JsonObject, where: str, usual: Mapping[str, Any], *, loop: bo
     """Return the script of one layer; `where` begins the names of its fields in errors."""
     own: dict[str, Any] = {**usual, **_options(script, where)}
     if where:
-        own["layer"] = as_text(script["layer"], f"{where}layer")
+        if "layers" in script:
+            own["members"] = parse_members(script["layers"], f"{where}layers")
+        if "layer" in script or "members" not in own:
+            own["layer"] = as_text(script["layer"], f"{where}layer")
+        else:
+            own["layer"] = " + ".join(own["members"])
     handles = {
         name: _handle(handle, f"{where}handle {name!r}")
         for name, handle in as_object(script["handles"], f"{where}handles").items()

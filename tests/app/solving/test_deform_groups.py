@@ -33,10 +33,12 @@ from app.solving import (
     find_drawing,
     part_deform_group,
     plan_reload,
+    pose_document,
     replace_member_picture,
     start_reload,
     step_reload,
 )
+from app.solving.script.pose_script import parse_pose_script
 from app.storage import (
     Picture,
     cut_picture,
@@ -317,3 +319,36 @@ def test_a_member_with_another_picture_changes_the_shape_of_its_group(bent):
     assert set(known) == {member.picture, after.layer(group.id).picture}
     assert after.layer(group.id).covers(np.array([100 + 112j])).all()
     assert [key.frame for key in after.layer(group.id).keys] == [0, 10]
+
+
+def test_scripts_bend_layers_as_one(opened):
+    script = {
+        "schema": 1,
+        "layers": [
+            {
+                "layers": ["ink", "colour"],
+                "layer": "fish",
+                "handles": {"head": [32, 60], "tail": [168, 60]},
+                "keys": [{"frame": 0}, {"frame": 6, "targets": {"tail": [160, 85]}}],
+            },
+            {"layer": "ink", "opacity": [[0, 1], [6, 0.5]]},
+            {"layer": "bubble", "attach": {"to": "ink", "at": [110, 60]}},
+        ],
+    }
+    document, notices = pose_document(opened.document, parse_pose_script(script), lambda _: None)
+    assert notices == ()
+    group = by_name(document, "fish")
+    assert [each.name for each in document.deform_members(group.id)] == ["colour", "ink"]
+    assert [key.frame for key in group.keys] == [0, 6]
+    assert by_name(document, "bubble").attachments[0].parent == group.id
+    assert len(by_name(document, "ink").keys_of(OPACITY)) == 2
+    del script["layers"][0]["layer"]
+    document, _ = pose_document(opened.document, parse_pose_script(script), lambda _: None)
+    assert by_name(document, "ink + colour").handles
+    script["layers"][1]["handles"] = {"eye": [60, 60]}
+    with pytest.raises(LissomError, match="bends with"):
+        pose_document(opened.document, parse_pose_script(script), lambda _: None)
+    for layers in (["ink"], ["ink", "ink"]):
+        script["layers"][0]["layers"] = layers
+        with pytest.raises(LissomError, match="two different layers"):
+            parse_pose_script(script)
