@@ -169,8 +169,14 @@ class Renderer:
             # The offscreen target holds the final colours. First subtract its share of the old
             # colours from the target, then add the same share of the final colours.
             self._context.copy_framebuffer(layer.framebuffer, target.framebuffer)
+            old = layer
+            if whole.kept:
+                target.framebuffer.use()
+                self._draw_parts(whole.kept, target, view, heat, depth + 1)
+                old = self._clear_layer(depth + 1, target)
+                self._context.copy_framebuffer(old.framebuffer, target.framebuffer)
             self._context.blend_equation = moderngl.FUNC_REVERSE_SUBTRACT  # type: ignore[assignment]
-            self._lay(layer, target, whole, tint=tint)
+            self._lay(old, target, whole, tint=tint)
             self._context.blend_equation = moderngl.FUNC_ADD  # type: ignore[assignment]
             layer.framebuffer.use()
         self._draw_parts(whole.parts, layer, view, heat, depth + 1)

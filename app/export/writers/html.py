@@ -102,6 +102,7 @@ def _parts(parts: Sequence[int | CompositeGroup[int]]) -> list[Any]:
             "blend": part.blend,
             "clipped": part.clipped,
             "passes": part.is_pass_through,
+            "kept": _parts(part.kept),
             "effects": {
                 name: np.atleast_1d(value).tolist()
                 for name, value in {**DEFAULT_EFFECTS, **part.effects}.items()

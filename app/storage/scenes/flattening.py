@@ -45,9 +45,8 @@ def flatten_layers(
         flat = flat.copy()
         for part in parts:
             if isinstance(part, CompositeGroup) and part.is_pass_through:
-                faded = Image.blend(
-                    flat.convert("RGBa"), over(flat, part.parts).convert("RGBa"), part.opacity
-                )
+                shown, rest = over(flat, part.parts), over(flat, part.kept)
+                faded = Image.blend(rest.convert("RGBa"), shown.convert("RGBa"), part.opacity)
                 flat = faded.convert("RGBA")
             elif isinstance(part, CompositeGroup):
                 flat = _blended(flat, over(Image.new("RGBA", size), part.parts), part)

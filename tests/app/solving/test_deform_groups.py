@@ -10,13 +10,16 @@ from numpy.testing import assert_allclose
 from PIL import Image, ImageDraw
 
 from app.document import (
+    DRAW_ORDER,
     OPACITY,
     VISIBILITY,
     Attachment,
     Document,
+    DrawOrder,
     ExportSettings,
     Meshing,
     deform_group_commands,
+    group_commands,
     handle_commands,
     key_commands,
     layer_commands,
@@ -43,6 +46,7 @@ from app.storage import (
     Picture,
     cut_picture,
     encode_png,
+    flatten_layers,
     load_project,
     make_still_layer,
     make_still_picture,
@@ -352,3 +356,26 @@ def test_scripts_bend_layers_as_one(opened):
         script["layers"][0]["layers"] = layers
         with pytest.raises(LissomError, match="two different layers"):
             parse_pose_script(script)
+
+
+def test_a_faded_group_is_one_composite_around_a_layer_between_its_members(bent):
+    document, pictures = bent
+    document = group_commands.group_layers(ids(document, ["colour", "ink", "fish"]), "all")(
+        document
+    )
+    document = layer_commands.set_hidden(by_name(document, "shade").id, hidden=True)(document)
+    document = group_commands.set_group_opacity("all", 0.5)(document)
+    bubble, colour = by_name(document, "bubble"), by_name(document, "colour")
+    key = DRAW_ORDER.key(0, DrawOrder(colour.id, in_front=True))
+    document = document.with_layer(bubble.with_keys_of(DRAW_ORDER, (key,)))
+    textures = {
+        each.id: cut_picture(pictures[each.id], each.cut_out).texture for each in document.layers
+    }
+    for frame in (*frames(document, pictures, 0), flatten_layers(document, textures)):
+        sky, orange = np.array([210, 230, 250]), np.array([240, 150, 60])
+        line, blue = np.array([20, 10, 30]), np.array([80, 200, 240])
+        assert_allclose(frame[60, 70, :3], (sky + orange) / 2, atol=2)
+        # The line hides the colour below it, as in a single picture that is faded.
+        assert_allclose(frame[30, 80, :3], (sky + line) / 2, atol=2)
+        # The layer between is not faded.
+        assert_allclose(frame[60, 110, :3], blue, atol=2)

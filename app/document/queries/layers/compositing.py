@@ -8,7 +8,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from app.document.channels.kind import Channel
 from app.document.channels.kinds import LAYER_KINDS
 from app.document.layer import Layer
-from app.document.layers.groups import BlendMode
+from app.document.layers.groups import BlendMode, Group, ancestor_paths
 from app.document.model import Document
 from app.document.queries.channel_values.values_at import layers_in_draw_order, opacity_at, value_at
 from app.document.queries.layers.clipping import group_runs
@@ -36,6 +36,8 @@ class CompositeGroup(Generic[Drawn]):
     # Pass-through group: its parts blend directly with the backdrop; the group's opacity is applied
     # to the result.
     is_pass_through: bool = False
+    # Of a pass-through group: parts of others that lie between its own, and are not faded.
+    kept: tuple["Drawn | CompositeGroup[Drawn]", ...] = ()
 
     @property
     def is_plain(self) -> bool:
@@ -61,6 +63,8 @@ class _ClipUnit(Generic[Drawn]):
 
     whole: CompositeGroup[Drawn]
     is_pass_through: bool = False  # whether the parts blend directly with the backdrop
+    # Parts of others between the group's own.
+    kept: tuple["Drawn | CompositeGroup[Drawn]", ...] = ()
     clipped: list[CompositeGroup[Drawn]] = field(default_factory=list)
 
 
@@ -102,9 +106,11 @@ def _parts(
 ) -> tuple[Drawn | CompositeGroup[Drawn], ...]:
     """Return the compositing of layers that share their groups down to this depth."""
     units: list[_ClipUnit[Drawn]] = []
-    for path, run in group_runs(layers, depth):
+    for path, run in _joined_runs(given.document, group_runs(layers, depth)):
         unit: _ClipUnit[Drawn]
-        if path:
+        if path and any(path not in ancestor_paths(layer.group) for layer in run):
+            unit = _parted_unit(given, path, run, depth)
+        elif path:
             group, inner = given.document.group(path), _parts(given, run, depth + 1)
             blend = "normal" if group.blend == "pass-through" else group.blend
             whole = CompositeGroup(inner, group.opacity, blend, group.clipped)
@@ -123,6 +129,49 @@ def _parts(
     return tuple(part for unit in units for part in _painted(unit))
 
 
+def _joined_runs(
+    document: Document, runs: Sequence[tuple[str, list[Layer]]]
+) -> list[tuple[str, list[Layer]]]:
+    """Join the runs of a faded group that others part, with what lies between them."""
+    joined: list[tuple[str, list[Layer]]] = []
+    rest = list(runs)
+    while rest:
+        path, run = rest.pop(0)
+        last = max((place for place, (other, _) in enumerate(rest) if other == path), default=-1)
+        inside = rest[: last + 1]
+        is_clipped = any(
+            document.group(other).clipped if other else others[0].clipped
+            for other, others in inside
+        )
+        if path and inside and not is_clipped and _fades_plainly(document.group(path)):
+            run = [*run, *(layer for _path, others in inside for layer in others)]
+            rest = rest[last + 1 :]
+        joined.append((path, run))
+    return joined
+
+
+def _fades_plainly(group: Group) -> bool:
+    is_plain = group.blend in {"normal", "pass-through"} and not group.clipped
+    return is_plain and group.opacity < 1
+
+
+def _parted_unit(
+    given: _Painted[Drawn], path: str, layers: Sequence[Layer], depth: int
+) -> _ClipUnit[Drawn]:
+    """Return a faded group whose layers others part: its parts are faded as one, the others not."""
+    parts: list[Drawn | CompositeGroup[Drawn]] = []
+    kept: list[Drawn | CompositeGroup[Drawn]] = []
+    for own, run in group_runs(layers, depth):
+        if own == path:
+            parts += _parts(given, run, depth + 1)
+            continue
+        others = _parts(given, run, depth)
+        parts += others
+        kept += others
+    whole = CompositeGroup(tuple(parts), given.document.group(path).opacity)
+    return _ClipUnit(whole, is_pass_through=True, kept=tuple(kept))
+
+
 def _painted(unit: _ClipUnit[Drawn]) -> tuple[Drawn | CompositeGroup[Drawn], ...]:
     """Return the parts of a unit: its own parts, or one group."""
     # Without a base below, a clipped layer is not clipped.
@@ -135,6 +184,8 @@ def _painted(unit: _ClipUnit[Drawn]) -> tuple[Drawn | CompositeGroup[Drawn], ...
         base = whole.parts
         base = (CompositeGroup(base, effects=whole.effects),) if whole.effects else base
         return (CompositeGroup((*base, *cut), whole.opacity, whole.blend),)
+    if unit.kept:
+        return (replace(whole, is_pass_through=True, kept=unit.kept),)
     if unit.is_pass_through and whole.opacity == 1:
         return whole.parts
     if unit.is_pass_through and whole.needs_backdrop:
