@@ -13,6 +13,7 @@ from app.solving.deform_group.rebuilding import (
     part_deform_group as part_deform_group,
     replace_member_picture as replace_member_picture,
 )
+from app.solving.deform_group.suggestion import suggest_deform_groups as suggest_deform_groups
 from app.solving.drag.drag_solver import DragSolver as DragSolver
 from app.solving.drag.rig import Rig as Rig
 from app.solving.drag.shown_pose import fit_shown_pose as fit_shown_pose

@@ -47,6 +47,23 @@ def why_not_bend_as_one(project: Project, identities: Iterable[int]) -> str | No
     return None
 
 
+def bending_suggestions(project: Project) -> tuple[tuple[int, ...], ...]:
+    """Return the layers of an opened drawing that may bend as one, as far as they can."""
+    document = project.document
+    return tuple(
+        layers
+        for layers in project.layer_list.bending_suggestions
+        if all(document.find_layer(each) is not None for each in layers)
+        and why_not_bend_as_one(project, layers) is None
+    )
+
+
+@with_project
+def dismiss_bending_suggestion(_: Session, project: Project, *layers: int) -> None:
+    """Stop suggesting that these layers bend as one."""
+    project.layer_list.dismiss_bending(layers)
+
+
 def bend_layers_as_one(session: Session, *identities: int) -> None:
     """Let one mesh with one set of handles bend layers, which stay layers in all else."""
     pending_changes.run_when_idle(session, do(_bend_as_one, *identities), _("Bend as one"))

@@ -25,6 +25,7 @@ class LayerListState(Revised):
 
     solo: frozenset[int] = frozenset()  # ids of soloed layers
     toggled_rows: frozenset[str] = frozenset()  # layer tree rows opened or closed by hand
+    bending_suggestions: tuple[tuple[int, ...], ...] = ()  # layers that may bend as one
     dismissed_suggestions: frozenset[str] = frozenset()  # groups without a switch suggestion
     # Formerly active layers whose rows stay until the pointer is over the drawing again.
     lingering: frozenset[int] = frozenset()
@@ -73,6 +74,16 @@ class LayerListState(Revised):
     def dismiss_suggestion(self, group: str) -> None:
         """Stop suggesting a switch for a group."""
         self.dismissed_suggestions |= {group}
+
+    def suggest_bending(self, layers: tuple[tuple[int, ...], ...]) -> None:
+        """Suggest sets of layers that may bend as one."""
+        self.bending_suggestions = layers
+
+    def dismiss_bending(self, layers: tuple[int, ...]) -> None:
+        """Stop suggesting that these layers bend as one."""
+        self.bending_suggestions = tuple(
+            each for each in self.bending_suggestions if each != layers
+        )
 
     def note_listed(self, layer: int) -> None:
         """Note that the list has scrolled to a layer."""

@@ -40,6 +40,7 @@ from app.solving import (
     replace_member_picture,
     start_reload,
     step_reload,
+    suggest_deform_groups,
 )
 from app.solving.script.pose_script import parse_pose_script
 from app.storage import (
@@ -379,3 +380,10 @@ def test_a_faded_group_is_one_composite_around_a_layer_between_its_members(bent)
         assert_allclose(frame[30, 80, :3], (sky + line) / 2, atol=2)
         # The layer between is not faded.
         assert_allclose(frame[60, 110, :3], blue, atol=2)
+
+
+def test_layers_that_lie_on_each_other_are_suggested(opened):
+    document, pictures = opened.document, opened.pictures
+    assert suggest_deform_groups(document, pictures) == (tuple(ids(document, NAMES)),)
+    hidden = layer_commands.set_hidden(by_name(document, "ink").id, hidden=True)(document)
+    assert suggest_deform_groups(hidden, pictures) == ()

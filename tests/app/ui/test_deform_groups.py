@@ -157,3 +157,15 @@ def test_layers_are_attached_to_the_group_of_a_member(window, scene, group):
     window.act(editing.undo)
     window.settle()
     assert scene.document.is_deform_group(group)
+
+
+def test_drawing_that_lies_on_itself_is_offered_to_bend_as_one(window, scene):
+    window.frames(2)
+    window.run(lambda robot: robot.item_click("Layers/**/Bend as one"))
+    window.settle()
+    assert len(scene.document.deform_members(scene.selection.active)) == 3
+    window.frames(2)
+    window.act(editing.undo)
+    window.settle()
+    window.run(lambda robot: robot.item_click("Layers/**/No"))
+    assert not scene.layer_list.bending_suggestions

@@ -21,6 +21,7 @@ from app.editor.session import Session
 from app.editor.work.jobs import JobKind
 from app.editor.work.layer_runtime import LayerRuntime, LayerRuntimes
 from app.errors import display_name
+from app.solving import suggest_deform_groups
 from app.storage import (
     LAYERED,
     VIDEOS,
@@ -91,6 +92,7 @@ class OpenedFile(NamedTuple):
     next_step: NextStep | None = None
     read_as: str | None = None
     drawings: tuple[Path, ...] = ()
+    bending: tuple[tuple[int, ...], ...] = ()  # layers that may bend as one
 
 
 @named_action(_("Open…"), "Ctrl+O", needs_project=False)
@@ -201,6 +203,7 @@ def _install(
         runtimes=LayerRuntimes(layers=opened.layer_runtimes),
         selection=Selection(active=foremost_posable(opened.document)),
     )
+    project.layer_list.suggest_bending(opened.bending)
     saving.set_project(session, project)
     if path.parent != sample_images():
         session.settings.add_recent(path)
@@ -225,7 +228,8 @@ def foremost_posable(document: Document) -> int:
 def with_layer_runtimes(opened: OpenedScene) -> OpenedFile:
     """Add the layer runtimes to a scene."""
     runtimes = _layer_runtimes(opened.document, opened.pictures)
-    return OpenedFile(opened.document, runtimes, opened.notices)
+    bending = suggest_deform_groups(opened.document, opened.pictures)
+    return OpenedFile(opened.document, runtimes, opened.notices, bending=bending)
 
 
 def _layer_runtimes(document: Document, pictures: Mapping[int, Picture]) -> dict[int, LayerRuntime]:

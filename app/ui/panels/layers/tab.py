@@ -6,8 +6,13 @@ from app.document import suggest_switch_groups
 from app.editor import Action, Project, Session, do
 from app.editor.actions import dialog_actions, playback
 from app.editor.actions.layer_setup import cut_out_editing, resolving
+from app.editor.layering.deform_groups import (
+    bend_layers_as_one,
+    bending_suggestions,
+    dismiss_bending_suggestion,
+)
 from app.editor.layering.switches import create_switch, dismiss_switch_suggestion
-from app.errors import few_notices
+from app.errors import display_name, few_notices, join_names
 from app.texts import _, message_of
 from app.ui.panels.layers.row import SmallPictures
 from app.ui.panels.layers.settings import draw_layer_settings
@@ -23,7 +28,8 @@ def draw_layers_panel(
     session: Session, look: Look, project: Project, pictures: SmallPictures
 ) -> list[Action]:
     """Draw the list of layers with thumbnails, and the settings of the active layer."""
-    actions = _summary(look, project) + _offers(look, project)
+    actions = _summary(look, project)
+    actions += _offers(look, project) + _bending_offers(look, project)
     actions += draw_layer_tree(session, look, project, pictures)
     if len(project.document.layers) == 1:
         small_text(
@@ -62,6 +68,23 @@ def _summary(look: Look, project: Project) -> list[Action]:
         for matter in few_notices(summary.notes):
             small_text(look, message_of(matter))
     imgui.separator()
+    return actions
+
+
+def _bending_offers(look: Look, project: Project) -> list[Action]:
+    """Draw the offers to bend layers as one that lie on each other, like ink and colour."""
+    actions: list[Action] = []
+    for layers in bending_suggestions(project):
+        imgui.push_id(str(layers))
+        names = join_names([project.document.layer(each).name for each in reversed(layers)])
+        text = _("{layers} lie on each other, like the ink and the colour of one part.")
+        small_text(look, display_name(text.format(layers=names)))
+        if imgui.button(_("Bend as one")):
+            actions.append(do(bend_layers_as_one, *layers))
+        imgui.same_line()
+        if imgui.button(_("No")):
+            actions.append(do(dismiss_bending_suggestion, *layers))
+        imgui.pop_id()
     return actions
 
 
