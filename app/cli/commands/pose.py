@@ -131,15 +131,10 @@ script of several layers has
                 "visible": [[0, true], [40, false]]}],
    "choices": [{"name": "mouth", "layers": ["closed", "ah"], "keys": [[0, "closed"], [8, "ah"]]}]
 
-Layers of one part, such as its ink and its colour, bend as one with a common entry:
+Layers of one part, such as ink and colour, bend as one with a common entry. Its "layer" names their
+deform group. An entry of "ink" alone has only what is its own: opacity, visible and order.
 
-   "layers": [{"layers": ["ink", "shadow", "colour"], "layer": "fish",
-               "handles": {"tail": [310, 150]},
-               "keys": [{"frame": 0}, {"frame": 12, "targets": {"tail": [300, 230]}}]},
-              {"layer": "shadow", "opacity": [[0, 1], [12, 0.5]]}]
-
-"layer" names their deform group, to which other layers can be attached; by default the name is
-"ink + shadow + colour". An entry of a member has only what is its own: opacity, visible and order.
+   "layers": [{"layers": ["ink", "colour"], "layer": "fish", "handles": {...}, "keys": [...]}]
 
 Each layer may have its own variant, bounds, anchor, tracks, springs, cycles and stiff. An attached
 layer moves as a whole, so that in every frame its anchor is at the point "at" of its parent. With

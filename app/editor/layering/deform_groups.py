@@ -134,6 +134,7 @@ def _part_group(session: Session, project: Project, identity: int) -> None:
             )
             return
         editing.edit_document(session, command)
+        project.layer_list.dismiss_bending(tuple(each.id for each in members))
         set_active_layer(session, members[-1].id)
         if group.handles or group.keys[1:]:
             text = _("The handles and keys of {group} are gone; its layers are as before.")

@@ -127,3 +127,11 @@ class Selection(Revised):
         self.handles &= {handle.id for handle in document.layer(self.active).handles}
         chosen = {channel: at & frames_in(document, channel) for channel, at in self.keys.items()}
         self.keys = {channel: frames for channel, frames in chosen.items() if frames}
+
+
+def foremost_posable(document: Document) -> int:
+    """Return the layer to pose first: the front one, still pictures aside."""
+    return next(
+        (layer.id for layer in reversed(document.layers) if not layer.still),
+        document.layers[-1].id,
+    )

@@ -15,7 +15,7 @@ from app.editor.actions.project_files import saving
 from app.editor.actions.project_files.saving import PROJECT
 from app.editor.error_reports import as_sentence, run_job
 from app.editor.parts.project_file import ProjectFile
-from app.editor.parts.selection import Selection
+from app.editor.parts.selection import Selection, foremost_posable
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import JobKind
@@ -215,14 +215,6 @@ def _install(
         dialog_actions.show_import_notice(session, project, opened.document.import_log)
     if opened.next_step:
         session.notices.show(tone="good", **opened.next_step._asdict())
-
-
-def foremost_posable(document: Document) -> int:
-    """Return the layer to pose first: the front one, still pictures aside."""
-    return next(
-        (layer.id for layer in reversed(document.layers) if not layer.still),
-        document.layers[-1].id,
-    )
 
 
 def with_layer_runtimes(opened: OpenedScene) -> OpenedFile:

@@ -7,11 +7,11 @@ from app.document import History
 from app.editor.action import do
 from app.editor.actions.action_spec import named_action
 from app.editor.actions.project_files import saving
-from app.editor.actions.project_files.files import OpenedFile, decode_project, foremost_posable
+from app.editor.actions.project_files.files import OpenedFile, decode_project
 from app.editor.error_reports import run_job
 from app.editor.parts.dialogs import RecoverableFile, RecoveryDialog
 from app.editor.parts.project_file import ProjectFile
-from app.editor.parts.selection import Selection
+from app.editor.parts.selection import Selection, foremost_posable
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import JobKind
