@@ -60,6 +60,7 @@ DISABLED = {  # while two handles of a bar with two keys are selected
         "Play all frames",
     ),
     *("Insert key", "Bake repeats", "Stop repeating", "End guide", "Import log", "Collect footage"),
+    "Speed graph",
 }
 HANDLES = {
     *(
