@@ -13,7 +13,7 @@ from app.texts import N_, _, ngettext
 # Relaxes the limits, and drags handles once more to their original targets.
 RelaxLimits = Callable[[Session, Mapping[int, Target]], None]
 STOPPED_AT_LIMIT = N_("{handle} stopped at its stretch limit.")
-STOPPED_BY_BONES = N_("{handle} stopped where its bones reach.")
+STOPPED_BY_BONES = N_("{handle} stopped: its bones reach no farther.")
 STOPPED_BY_HANDLES = N_("{handle} stopped where the other handles hold the shape.")
 
 

@@ -115,8 +115,8 @@ def draw_ik_target(document: Document, look: Look, layer: Layer, frame: int) -> 
             channel,
             frame,
             {
-                "x": (target.place.real, "%.1f px", _("Place in the scene from the left")),
-                "y": (target.place.imag, "%.1f px", _("Place in the scene from below")),
+                "x": (target.place.real, "%.1f px", _("Pixels from the left edge of the scene")),
+                "y": (target.place.imag, "%.1f px", _("Pixels from the bottom edge of the scene")),
                 "target turn": (math.degrees(target.turn), "%.1f°", _("Rotation in the scene")),
                 "mix": (100 * target.mix, "%.0f %%", _("0 % follows the parents")),
             },

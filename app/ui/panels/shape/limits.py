@@ -75,7 +75,7 @@ def draw_limits(look: Look, project: Project) -> list[Action]:
             look,
             _("Poses never exceed these limits. Bars: what this pose uses.")
             if _is_pose(project)
-            else _("Poses never exceed these limits. Bars: what the keys around it use."),
+            else _("Poses never exceed these limits. Bars: what the keys before and after use."),
         )
         for limit in LIMITS:
             actions += _limit(look, limit, bounds, reached)

@@ -242,7 +242,7 @@ def test_a_hand_bends_its_arm_and_stays_within_reach(tmp_path):
     beyond = drag(session, 2, 400j)
     tool_pointer.release_pointer(session, beyond)
     settle(session)
-    assert session.notices.toasts[-1].text.endswith("stopped where its bones reach.")
+    assert session.notices.toasts[-1].text.endswith("stopped: its bones reach no farther.")
 
 
 def arm_session(tmp_path):

@@ -34,7 +34,7 @@ def rig_layer(session: Session, project: Project) -> None:
         preset_setup.begin_motion_setup(session)
     elif draft.unsure:
         preset_setup.begin_motion_setup(session)
-        session.notices.show(_("Say which limbs are nearer. Then press Rig this again."))
+        session.notices.show(_("Say which limbs are nearer. Then press “Rig this” again."))
     else:
         _rig(session, project, draft)
 
