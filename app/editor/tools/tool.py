@@ -38,6 +38,11 @@ class PointerHit:
     is_over: bool = True  # whether the pointer is over the drawing, and not elsewhere in the window
     em: float = 1.0  # the size of the window's text, in pixels of the picture
 
+    @property
+    def is_opposite(self) -> bool:
+        """Whether the press does the opposite: with Ctrl, or Alt, which window managers take."""
+        return self.ctrl or self.alt
+
 
 @dataclass(frozen=True, slots=True)
 class SelectionSnapshot:

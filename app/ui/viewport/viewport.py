@@ -26,7 +26,7 @@ from app.editor.tools.table import is_on_gizmo, pointed_tool, tools_of
 from app.editor.tools.tool import PointerHit
 from app.texts import _
 from app.ui.panel import is_in_front
-from app.ui.shortcuts.keys import ALT, CTRL, format_modified
+from app.ui.shortcuts.keys import CTRL, format_modified, shown_keys
 from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.style.theme import Look, pixel_density
 from app.ui.style.widgets import is_hovered_or_held, is_pressed, menu_entry
@@ -246,7 +246,7 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
         return actions
     chosen = screen.project.selection.handles | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
-    if menu_entry(_("Delete"), icons.ICON_FA_TRASH, format_modified(ALT, _("click"))):
+    if menu_entry(_("Delete"), icons.ICON_FA_TRASH, shown_keys(editing.delete_selection)):
         actions.append(do(remove_handles, chosen))
     for spec in (
         pin_selected_handles,

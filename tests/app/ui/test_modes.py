@@ -69,7 +69,7 @@ def test_a_left_draft_is_kept_and_the_panel_says_so(window, loose, monkeypatch, 
     assert session.tools.motion_setup.joints[name] == place
 
 
-def test_hint_names_one_effect_of_a_click(window, loose, hint_at):
+def test_hint_names_one_effect_of_a_click_and_of_a_double_click(window, loose, hint_at):
     session, first = window.session, loose.selection.active
     duplicate_layer(session, first)
     set_active_layer(session, first)
@@ -77,7 +77,7 @@ def test_hint_names_one_effect_of_a_click(window, loose, hint_at):
     shown = loose.layer_runtime.shown
     left, right = shown.placement.apply(shown.handle_positions).tolist()
     hint = hint_at(left + 0.25 * (right - left))
-    assert hint.startswith("Click to pose bar copy, Ctrl+click")
+    assert hint.startswith("Double-click to pose bar copy, click to add a handle, Ctrl+click")
 
 
 def test_hint_offers_no_handle_on_a_still_picture(window, loose, hint_at):

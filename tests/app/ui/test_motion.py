@@ -123,7 +123,7 @@ def test_joints_are_dragged_left_out_and_put_back(window, child):
     hand = window.session.tools.motion_setup.joints["hand.L"]
     press(window, hand, to=hand - 12)
     assert abs(window.session.tools.motion_setup.joints["hand.L"] - (hand - 12)) < 3
-    press(window, window.session.tools.motion_setup.joints["elbow.L"], key=window.Key.mod_alt)
+    press(window, window.session.tools.motion_setup.joints["elbow.L"], key=window.Key.mod_ctrl)
     assert "elbow.L" not in window.session.tools.motion_setup.joints
     press(window, window.session.tools.motion_setup.joints["head"])
     window.run(lambda robot: robot.key_press(int(window.Key.delete)))

@@ -39,17 +39,17 @@ class CutBrushTool(Tool):
         is_keeping = session.tools.mode == "keep"
         return (
             Hint(keep if is_keeping else remove),
-            Hint(remove if is_keeping else keep, "alt"),
+            Hint(remove if is_keeping else keep, "ctrl"),
             Hint(_("[ and ] for the brush size")),
             Hint(_("X to swap")),
         )
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Begin a stroke; with Alt, swap keep and remove."""
+        """Begin a stroke; with Ctrl or Alt, swap keep and remove."""
         if session.tools.mode not in {"keep", "remove"}:
             return None
-        keeps = (session.tools.mode == "keep") != spot.alt
+        keeps = (session.tools.mode == "keep") != spot.is_opposite
         radius = cut_out_editing.brush_radius(project)
         return cls(project=project, places=[spot.place], radius=radius, keeps=keeps)
 
@@ -79,7 +79,7 @@ class CutBrushTool(Tool):
             points = (stroke.points + layer.corner).tolist()
             yield StrokeShape(points=points, radius=stroke.radius, role=brush_role(stroke.keeps))
         if session.tools.mode in {"keep", "remove"} and is_brush_shown(session, spot):
-            keeps = (session.tools.mode == "keep") != spot.alt
+            keeps = (session.tools.mode == "keep") != spot.is_opposite
             yield from brush_ring(spot.place, cut_out_editing.brush_radius(project), keeps, spot.em)
 
     def shapes(self, place: complex, em: float) -> Iterable[OverlayShape]:
@@ -88,7 +88,7 @@ class CutBrushTool(Tool):
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class KnifeTool(Tool):
-    """The pointer draws a line along which the knife cuts; a click with Alt removes a line."""
+    """The pointer draws a line along which the knife cuts; a click with Ctrl removes a line."""
 
     places: list[complex]
     parts: bool
@@ -99,15 +99,15 @@ class KnifeTool(Tool):
             return ()
         return (
             Hint(_("draw a line between the parts, from outside inwards")),
-            Hint(_("click on a line to delete it"), "alt"),
+            Hint(_("click on a line to delete it"), "ctrl"),
         )
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Begin a line; with Alt, begin a click on a line."""
+        """Begin a line; with Ctrl or Alt, begin a click on a line."""
         if session.tools.mode != "knife":
             return None
-        return cls(project=project, places=[spot.place], parts=not spot.alt)
+        return cls(project=project, places=[spot.place], parts=not spot.is_opposite)
 
     def move(self, session: Session, place: complex) -> None:
         if self.is_away(session, self.places[-1], place):

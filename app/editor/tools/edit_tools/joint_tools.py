@@ -26,7 +26,7 @@ DOT = 0.42  # em: radius of a joint
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class JointTool(Tool):
-    """The pointer drags a joint; a click with Alt leaves the joint out."""
+    """The pointer drags a joint; a click with Ctrl or Alt leaves the joint out."""
 
     name: str
     start: complex
@@ -66,7 +66,7 @@ class JointTool(Tool):
         if name is None:
             return (Hint(_("drag each joint to its place")),)
         text = _("drag {joint} to its place").format(joint=_(name))
-        return (Hint(text), Hint(_("click to leave the joint out"), "alt"))
+        return (Hint(text), Hint(_("click to leave the joint out"), "ctrl"))
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -77,7 +77,7 @@ class JointTool(Tool):
         if name is None:
             joint_placement.select_joint(session, None)
             return None
-        if spot.alt:
+        if spot.is_opposite:
             joint_placement.exclude_joint(session, name)
             return None
         joint_placement.select_joint(session, name)

@@ -20,7 +20,7 @@ from app.ui.panels.motion_preset.parameters import (
     draw_applied_parameters,
     draw_parameter_sliders,
 )
-from app.ui.shortcuts.keys import ALT, format_modified, shown_keys
+from app.ui.shortcuts.keys import CTRL, format_modified, shown_keys
 from app.ui.shortcuts.widgets import draw_action_main_button, draw_action_text_button
 from app.ui.style.sliders import Scale, slider
 from app.ui.style.theme import Look, colour_u32, icon_glyph
@@ -145,7 +145,7 @@ def _joints(session: Session, look: Look, draft: MotionSetup) -> list[Action]:
         _(
             "Drag the joints to their places on the drawing. To leave a joint out, click it "
             "here, or {keys} it on the drawing."
-        ).format(keys=format_modified(ALT, _("click"))),
+        ).format(keys=format_modified(CTRL, _("click"))),
     )
     has_sides = draft.kind == "biped-front"
     widths = split_line(1 + has_sides)
