@@ -32,7 +32,7 @@ class MoveTool(PoseTool):
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if session.tools.mode == "move":
             root = _root_parent(session, project, spot.layer)
-            if root.still or root.locked or spot.layer not in {None, root.id}:
+            if spot.on_gizmo or root.still or root.locked or spot.layer not in {None, root.id}:
                 return ()
             return (Hint(_("drag to move {layer}").format(layer=root.name)),)
         return (Hint(_("drag to move the whole layer"), "ctrl+shift"),) if _is_beside(spot) else ()

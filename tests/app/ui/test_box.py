@@ -73,7 +73,7 @@ def test_knob_turns_in_steps_with_shift_under_a_turned_camera(window, bar):
     knob = box.knob_place(em)
     goal = box.pivot + cmath.exp(0.3j) * (knob - box.pivot)
     first, second = drag(window, knob, goal, keys=SHIFT)
-    assert first.startswith("Drag to turn around the pivot")
+    assert first == "Drag to turn around the pivot, Ctrl+← → turn"
     assert "type a number of degrees" in second
     assert angle_of(bar, before) == pytest.approx(np.radians(15), abs=2e-3)
     editing.undo(window.session)

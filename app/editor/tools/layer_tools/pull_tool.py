@@ -97,6 +97,6 @@ class PullTool(Tool):
 
 def _pressed_layer(session: Session, project: Project, spot: PointerHit) -> int | None:
     """Return the layer under the pointer in the mode Move, unless it is locked."""
-    if session.tools.mode != "move" or spot.layer is None:
+    if session.tools.mode != "move" or spot.layer is None or spot.on_gizmo:
         return None
     return None if project.document.layer(spot.layer).locked else spot.layer
