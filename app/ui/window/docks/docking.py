@@ -229,7 +229,8 @@ class Docking:
         pairs = zip(self._panels, nodes, strict=True)
         titles = [_(panel.title) for panel, node in pairs if node and panel.place == SIDE_DOCK]
         words = sum(imgui.calc_text_size(title).x for title in titles) / em
-        return words + (len(titles) + 1) * 4 * TAB_GAP
+        # Padding at both sides of each title, a gap, and pixels that are rounded.
+        return words + (len(titles) + 1) * 3 * TAB_GAP + 0.5
 
     def _together(
         self,
