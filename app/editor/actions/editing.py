@@ -250,7 +250,7 @@ def movable_keys(document: Document) -> KeysByChannel:
 def _has_deletable(session: Session, project: Project) -> bool:
     """Return whether keys, visible handles, a joint of a motion or a channel are selected."""
     joint = session.tools.motion_setup is not None and session.tools.motion_setup.selected_joint
-    is_channel = session.display.is_timeline_focused and project.channel.kind is not POSE
+    is_channel = session.display.is_timeline_focused and project.graph.has_lane(project.channel)
     handles = project.selection.handles and not session.tools.is_cutting
     return bool(joint or handles or project.selection.keys or is_channel)
 
@@ -271,7 +271,7 @@ def delete_selection(session: Session, project: Project) -> None:
         joint_placement.exclude_joint(session, draft.selected_joint)
     elif project.selection.keys:
         _delete_keys(session, project)
-    elif session.display.is_timeline_focused and project.channel.kind is not POSE:
+    elif session.display.is_timeline_focused and project.graph.has_lane(project.channel):
         channel = project.channel
         keys = {channel: frames_in(project.document, channel)}
         edit_document(session, channel_commands.delete_keys(keys))

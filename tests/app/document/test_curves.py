@@ -4,27 +4,39 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from documents import disc_document
+from documents import CENTRE, disc_document
 from numpy.testing import assert_allclose
 
 from app.document import (
     CAMERA,
+    DEPTH,
     HOLD,
     LINEAR,
     OPACITY,
     PRESETS,
+    SLIDER,
     TINT,
     TRANSFORM,
+    VISIBILITY,
     Camera,
     Channel,
     Easing,
     Keyframe,
+    LibraryPose,
+    Quantity,
+    Slider,
+    SliderPose,
     TangentHandle,
     TangentMode,
+    Track,
+    TrackKey,
     Transform,
     channel_commands,
+    channels_in,
+    curve_commands,
     curves_of,
     find_tangent_handle,
+    handle_commands,
     keys_in,
     pose_channel,
     sample_curves,
@@ -32,6 +44,7 @@ from app.document import (
     with_tangent_handle,
 )
 from app.document.commands.keys.stored_keys import put_keys
+from app.document.queries.channel_values.curves import FORMS
 from app.document.settings import FrameRange
 from app.storage.project.channel_codecs import LAYER_KEYS
 
@@ -196,3 +209,48 @@ def test_own_velocities_scale_with_time_and_come_back_from_files():
         assert_allclose(
             value_at(slower, MOVED, 2 * frame).shift, value_at(document, MOVED, frame).shift
         )
+
+
+def test_each_curve_moves_its_own_number_only_and_stops_at_its_limits():
+    handle, up = 0, Channel(SLIDER, 0, "nod")
+    document = handle_commands.add_handle(0, CENTRE)(scene())
+    layer = document.layers[0]
+    library = tuple(LibraryPose(name=name, pose=layer.keys[0].pose) for name in "ab")
+    poses = tuple(SliderPose(at=complex(at), pose=name) for at, name in enumerate("ab"))
+    track = Track(
+        handles=(handle,),
+        keys_rotation=True,
+        keys=(TrackKey(frame=2, place=3 + 4j, turn=0.5), TrackKey(frame=9, place=1j)),
+    )
+    layer = replace(
+        layer, tracks=(track,), library=library, sliders=(Slider(name="nod", poses=poses),)
+    )
+    document = document.with_layer(layer)
+    own = (Channel(OPACITY, 0), Channel(TINT, 0), Channel(DEPTH, 0, handle), Channel(VISIBILITY, 0))
+    for channel in (*own, up):
+        value = 0.25 if channel.kind in (DEPTH, SLIDER) else channel.kind.default
+        document = channel_commands.set_key(channel, 2, value)(document)
+    seen = 0
+    for channel in channels_in(document):
+        for curve in curves_of(document, channel):
+            frame = keys_in(document, channel)[0].frame
+            for change in (-0.5, -1e12, 1e12):
+                changes = {curve.unit: change}
+                command = curve_commands.move_points({}, [(curve, frame)], 0, changes)
+                moved = command(document)
+                numbers = {
+                    each: (
+                        each.number_at_key(document, keys_in(document, channel)[0]),
+                        each.number_at_key(moved, keys_in(moved, channel)[0]),
+                    )
+                    for each in curves_of(document, channel)
+                }
+                before, after = numbers.pop(curve)
+                low, high = (s * FORMS[curve.field.quantity].scale for s in curve.field.limits)
+                wanted = before if curve.is_timing else min(max(before + change, low), high)
+                is_switched = curve.field.quantity is Quantity.FLAG
+                assert_allclose(after, wanted >= 0.5 if is_switched else wanted, rtol=1e-9)
+                for one, other in numbers.values():
+                    assert_allclose(one, other)
+                seen += 1
+    assert seen == 3 * (1 + 4 + 3 + 1 + 3 + 1 + 1 + 1 + 4)

@@ -286,12 +286,18 @@ def test_a_tangent_is_dragged(window, project, play):
     assert project.document is before
 
 
-def test_a_double_click_on_a_curve_adds_a_key_and_delete_deletes_it(window, project, play):
+@pytest.mark.parametrize("is_double", [True, False])
+def test_a_click_on_a_curve_adds_a_key_and_delete_deletes_it(window, project, play, is_double):
     def add(hand):
         # Midway, the curve of the opacity is a straight line.
         ends = [hand.centre(FADED, "Opacity", f"point {frame}") for frame in (12, 30)]
         hand.go((ends[0] + ends[1]) / 2)
-        hand.robot.mouse_double_click(0)
+        if is_double:
+            hand.robot.mouse_double_click(0)
+        else:
+            hand.robot.key_down(int(window.Key.left_ctrl))
+            hand.robot.mouse_click(0)
+            hand.robot.key_up(int(window.Key.left_ctrl))
         hand.robot.yield_(4)
 
     project.graph.show_channels((FADED,))
@@ -308,6 +314,8 @@ def test_a_double_click_on_a_curve_adds_a_key_and_delete_deletes_it(window, proj
 
     after = play(delete)
     assert keys_in(after, FADED) == keys_in(before, FADED)
+    # Without a selected point, the channel stays.
+    assert play(lambda hand: hand.press(window.Key.delete)) is after
 
 
 def test_points_are_copied_and_pasted(window, play):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
-from app.document import Channel, ChannelCurve, Document, curves_of, keys_in
+from app.document import POSE, Channel, ChannelCurve, Document, curves_of, keys_in
 from app.editor.parts.timeline.gestures import CurvePoint
 from app.editor.work.revised import Revised
 
@@ -33,6 +33,10 @@ class GraphState(Revised):
         """Return the channels whose curves are shown; their keys are numbers."""
         shown = self.graphed if selected in self.graphed else (selected,)
         return [each for each in shown if keys_in(document, each) and curves_of(document, each)]
+
+    def has_lane(self, channel: Channel[Any]) -> bool:
+        """Return whether a channel has a lane of its own, with which it can be deleted."""
+        return channel.kind is not POSE and not self.is_open
 
     def open(self, channels: tuple[Channel[Any], ...]) -> None:
         """Show the graph of some channels in place of the lanes."""
