@@ -257,6 +257,11 @@ class PoseSampler:
                 self.known.tangents[key] = found
         return found
 
+    def weights_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> TimeWeights:
+        """Return the time weights of a segment's keys."""
+        ends = self._ends(segment, bounds, variant) if segment.has_smooth_tangent else (1.0, 1.0)
+        return TimeWeights.between(*ends, apart=segment.apart)
+
     def segment_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> KeyframeSegment:
         """Return a segment as the engine needs it, sampled here."""
         samples = [self.samples(key.pose) for key in segment.keys]
@@ -264,22 +269,18 @@ class PoseSampler:
         if not segment.has_smooth_tangent:
             keyframe_blend = KeyframeBlend.of(samples, root_sheets(anchors, segment.revolutions))
             return self._interval(keyframe_blend, variant, Bounds())
-        time_weights = TimeWeights.between(
-            *self._ends(segment, bounds, variant), apart=segment.apart
-        )
         count = len(samples) - sum(segment.apart)
         sheets = [*root_sheets(anchors[:count], segment.revolutions[: count - 1])]
         # The outer keys of other cycles are reached from the middle keys of their windows.
-        others = iter(
-            zip(range(count, len(samples)), segment.revolutions[count - 1 :], strict=True)
-        )
+        others = zip(range(count, len(samples)), segment.revolutions[count - 1 :], strict=True)
         for side, (_, middle, _) in enumerate(segment.windows):
             if segment.apart[side]:
                 other, turns = next(others)
                 pair = [middle, other] if side == 0 else [other, middle]
                 change = int(root_sheets(anchors[pair], (turns,))[1])
                 sheets.append(sheets[middle] + (change if side == 0 else -change))
-        keyframe_blend = KeyframeBlend.of(samples, freeze(np.array(sheets, np.int32)), time_weights)
+        weights = self.weights_of(segment, bounds, variant)
+        keyframe_blend = KeyframeBlend.of(samples, freeze(np.array(sheets, np.int32)), weights)
         return self._interval(keyframe_blend, variant, bounds)
 
     def _prepared(self, interval: KeyframeSegment, variant: Variant) -> Inbetweens:

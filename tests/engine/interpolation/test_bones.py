@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from engine.interpolation import ChainOfBones, SegmentBones
+from engine.interpolation import (
+    ChainOfBones,
+    InteriorKnot,
+    SegmentBones,
+    Tangent,
+    TimeWeights,
+)
 
 BODY = np.array([-1, -1 + 1j, -2 + 0.5j, -1 - 1j])
 UPPER = np.array([0.2, 0.5, 0.8], complex)
@@ -24,7 +30,7 @@ def posed(upper, lower, body=0.0, lack=0.0):
 
 
 def bones(*ends):
-    return SegmentBones(rest=REST, ends=np.array(ends), chains=[CHAIN])
+    return SegmentBones(rest=REST, places=np.array(ends), chains=[CHAIN])
 
 
 def lengths(wanted):
@@ -63,3 +69,54 @@ def test_two_bones_reach_a_pinned_end(time):
     # Beyond reach the angles stay.
     free = known.wanted(time, posed(0.7, -1.3), {})
     assert_allclose(known.wanted(time, posed(0.7, -1.3), {7: 5 + 0j}), free)
+
+
+def test_bones_go_through_a_keyframe_at_one_velocity():
+    """Segments of 8 and 12 frames with a tangent at the key between; the second swings back."""
+    keys = [posed(0.2, -2.9), posed(1.4, -1.2, 0.3), posed(0.9, 2.6, 0.5)]  # across half a turn
+    tangent = Tangent(InteriorKnot(8.0, 12.0), 1.0, 1.0)
+    ends = (1.0, tangent), (tangent, 1.0)
+    before, after = (
+        SegmentBones(
+            rest=REST,
+            places=np.array(keys),
+            chains=[CHAIN._replace(end_part=None)],
+            revolutions=(0, 0),
+            time_weights=TimeWeights.between(*each),
+        )
+        for each in ends
+    )
+    assert_allclose(before.wanted(0.0, keys[0], {}), keys[0], atol=1e-12)
+    for segment, time in ((before, 1.0), (after, 0.0)):
+        assert_allclose(segment.wanted(time, keys[1], {}), keys[1], atol=1e-12)
+    assert_allclose(after.wanted(1.0, keys[2], {}), keys[2], atol=1e-12)
+    step = 1e-5
+    here = keys[1]
+    arriving = (here - before.wanted(1 - step, here, {})) / (8 * step)
+    leaving = (after.wanted(step, here, {}) - here) / (12 * step)
+    assert np.abs(leaving[4:]).max() > 0.05
+    assert_allclose(arriving, leaving, atol=1e-4)
+    straight = SegmentBones(rest=REST, places=np.array(keys[:2]), chains=[CHAIN])
+    corner = (here - straight.wanted(1 - step, here, {})) / (8 * step)
+    assert np.abs(corner - leaving).max() > 0.05
+
+
+def test_an_end_with_an_angle_keeps_the_whole_turns_of_its_body():
+    foot = np.array([2.0, 2.3, 2.3 + 0.2j])
+    chain = CHAIN._replace(end_part=3, has_own_angle=True)
+    at = [
+        np.concatenate([places, np.exp(1j * turn) * (foot - 2) + places[-1]])
+        for places, turn in ((posed(0.2, 0.4), 0.5), (posed(0.3, 0.4), 0.9), (posed(0.1, 0.3), 1.5))
+    ]
+    weights = TimeWeights.between(1.0, Tangent(InteriorKnot(1.0, 1.0), 1.0, 1.0))
+    known = SegmentBones(
+        rest=[*REST, foot],
+        places=np.array(at),
+        chains=[chain],
+        revolutions=(1, 0),
+        time_weights=weights,
+    )
+    half = known.wanted(0.5, at[0], {})
+    turn = np.vdot(foot - foot.mean(), half[-3:] - half[-3:].mean())
+    expected = weights(0.5) @ np.array([0.5, 0.9 + 2 * np.pi, 1.5 + 2 * np.pi])
+    assert_allclose(turn / abs(turn), np.exp(1j * expected), atol=1e-9)

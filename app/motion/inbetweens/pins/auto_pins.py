@@ -137,7 +137,12 @@ class AutoPins:
         anchor, firmness = layer.anchor if layer.has_parent else None, self._firmness(segment)
         limbs, bones, count = find_limbs(layer), None, len(layer.handles)
         if limbs is not None:
-            bones = segment_bones(layer, limbs, keys, np.array(ends)[:, count:])
+            whole = pose_segments(clip)[number]
+            places = [sampler.samples(key.pose).positions[count:] for key in whole.keys]
+            weights = sampler.weights_of(whole, layer.widest_bounds, self._variant)
+            bones = segment_bones(
+                *(layer, limbs, keys, np.array(places), whole.revolutions, weights.unlimited)
+            )
             firmness = firmness_on_limbs(layer, limbs, firmness, segment.is_pinned)
         return SegmentPins(
             is_pinned=segment.is_pinned,

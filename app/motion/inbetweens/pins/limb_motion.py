@@ -4,7 +4,7 @@ import numpy as np
 
 from app.document import Keyframe, Layer, Limbs
 from engine.arrays import Booleans, Complexes, Floats
-from engine.interpolation import ChainOfBones, SegmentBones
+from engine.interpolation import ChainOfBones, SegmentBones, TimeWeights
 
 BODY_POINTS = 8  # of those that tell how the body moves
 END_POINTS = 8  # of those that hold a foot, a hand or a head
@@ -23,9 +23,18 @@ def rigid_points(limbs: Limbs) -> list[Complexes]:
 
 
 def segment_bones(
-    layer: Layer, limbs: Limbs, keys: tuple[Keyframe, Keyframe], ends: Complexes
+    layer: Layer,
+    limbs: Limbs,
+    keys: tuple[Keyframe, Keyframe],
+    places: Complexes,
+    revolutions: tuple[int, ...],
+    time_weights: TimeWeights,
 ) -> SegmentBones:
-    """Return the bones of a segment; `ends`, (2, p), are places of the rigid points at its keys."""
+    """Return the bones of a segment.
+
+    `places`, (q, p), are those of the rigid points at all keys with a time weight, and
+    `revolutions` the whole turns between these keys.
+    """
     numbers = {handle.id: number for number, handle in enumerate(layer.handles)}
     chains = [
         ChainOfBones(
@@ -41,7 +50,11 @@ def segment_bones(
         for limb in limbs.limbs
     ]
     return SegmentBones(
-        rest=rigid_points(limbs), ends=ends, chains=chains, revolutions=keys[0].revolutions
+        rest=rigid_points(limbs),
+        places=places,
+        chains=chains,
+        revolutions=revolutions,
+        time_weights=time_weights,
     )
 
 

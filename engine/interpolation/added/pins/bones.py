@@ -1,9 +1,10 @@
-"""Bones during a segment: they keep their lengths, and turn by angles that are blended linearly.
+"""Bones during a segment: they keep their lengths, and turn by angles that are blended.
 
-Each bone moves as its points do, by their best rigid motion R(z) = c + u z, |u| = 1. At both
-keyframes a bone has an angle against the one before it (the body, for a root), a place at its
+Each bone moves as its points do, by their best rigid motion R(z) = c + u z, |u| = 1. At each
+keyframe a bone has an angle against the one before it (the body, for a root), a place at its
 joint, and a lack of rigidity f / u − p. In between these three are blended in the axes of the bone
-before, so that nothing changes at the keyframes. The body moves as in the base. Where the end of a
+before, with the time weights of the base, so that nothing changes at the keyframes and angles go
+through them at one velocity where the base does. The body moves as in the base. Where the end of a
 chain of two bones is pinned, both bones turn further to bring it there.
 
 A foot, a hand or a head is one more part at the end of a chain, and moves like a bone. With an
@@ -13,14 +14,15 @@ goes from place to place by 3t² − 2t³, or evenly on ground that moves.
 
 from cmath import exp, phase
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Complexes
+from engine.arrays import Complexes, Floats
+from engine.interpolation.time_weights.weights import TimeWeights
 
 
 class ChainOfBones(NamedTuple):
@@ -82,23 +84,49 @@ class SegmentBones:
     ----------
     rest : sequence of complex128 arrays
         The points of each part in the drawing; those of the body first.
-    ends : complex128, shape (2, p)
-        Places of all points at the keyframes.
+    places : complex128, shape (q, p)
+        Places of all points at the keyframes that have a time weight.
     chains : sequence of ChainOfBones
         Each after the chain that carries it.
-    revolutions : int
-        Additional whole turns of the body.
+    revolutions : sequence of int
+        Additional whole turns of the body between neighbours of these keyframes, and then from or
+        to those of one-sided tangents.
+    time_weights : TimeWeights
+        Weights of the keyframes; the linear blend of two by default.
     """
 
     rest: Sequence[Complexes]
-    ends: Complexes
+    places: Complexes
     chains: Sequence[ChainOfBones]
-    revolutions: int = 0
+    revolutions: Sequence[int] = (0,)
+    time_weights: TimeWeights = field(default_factory=TimeWeights.straight)
 
     @cached_property
     def at_keys(self) -> list[list[RigidPart]]:
-        """The motions of all parts at both keyframes."""
-        return [self._fit(places) for places in self.ends]
+        """The motions of all parts at the keyframes."""
+        return [self._fit(places) for places in self.places]
+
+    @property
+    def at_ends(self) -> tuple[list[RigidPart], list[RigidPart]]:
+        """The motions of all parts at the two keyframes of the segment."""
+        first = self.time_weights.first
+        return self.at_keys[first], self.at_keys[first + 1]
+
+    @cached_property
+    def _steps(self) -> list[tuple[int, int, int]]:
+        """Pairs of keyframes with the whole turns between them; the first of all is known."""
+        weights, turns = self.time_weights, list(self.revolutions)
+        first, count = weights.first, weights.count - sum(weights.one_sided)
+        steps = [(i, i + 1, turns[i]) for i in range(first, count - 1)]
+        steps += [(i, i - 1, -turns[i - 1]) for i in range(first, 0, -1)]
+        outer = zip(range(count, weights.count), turns[count - 1 :], strict=True)
+        for middle, sign, is_apart in zip(
+            (first, first + 1), (1, -1), weights.one_sided, strict=True
+        ):
+            if is_apart:
+                other, whole = next(outer)
+                steps.append((middle, other, sign * whole))
+        return steps
 
     def wanted(
         self,
@@ -154,17 +182,13 @@ class SegmentBones:
         self, own: int, earlier: int, joint: complex, time: float, before: RigidPart
     ) -> RigidPart:
         """Return the motion of a part on the one before it, which moves by `before`."""
-        (first, last), (here, there) = (
-            [key[number] for key in self.at_keys] for number in (own, earlier)
-        )
-        swept = self._relative_turn(own, earlier)
-        turn = before.turn * first.turn / here.turn * exp(1j * time * swept)
-        gaps = [
-            (part.at(joint) - base.at(joint)) / base.turn
-            for part, base in ((first, here), (last, there))
-        ]
-        gap = before.turn * ((1 - time) * gaps[0] + time * gaps[1])
-        lack = (1 - time) * first.lack + time * last.lack
+        weights, pairs = self.time_weights(time), [(key[own], key[earlier]) for key in self.at_keys]
+        first, here = pairs[self.time_weights.first]
+        swept = float(weights @ self._relative_turns(own, earlier))
+        turn = before.turn * first.turn / here.turn * exp(1j * swept)
+        gaps = np.array([(part.at(joint) - base.at(joint)) / base.turn for part, base in pairs])
+        gap = before.turn * complex(weights @ gaps)
+        lack = weights @ np.array([part.lack for part, _ in pairs])
         return RigidPart(joint, before.at(joint) + gap, turn, lack)
 
     def _end(
@@ -175,14 +199,16 @@ class SegmentBones:
         end = self._blended_part(own, chain.parts[-1], joint, time, before)
         if chain.has_own_angle or goal is not None:
             numbers = (0, *self._parts_to_end(chain), own)
-            steps = [self._relative_turn(*pair) for pair in zip(numbers[1:], numbers, strict=False)]
-            swept = self._body_turn + sum(steps)
-            end = end._replace(turn=self.at_keys[0][own].turn * exp(1j * time * swept))
+            swept = self._body_turns + sum(
+                self._relative_turns(*pair) for pair in zip(numbers[1:], numbers, strict=False)
+            )
+            turn = exp(1j * float(self.time_weights(time) @ swept))
+            end = end._replace(turn=self.at_ends[0][own].turn * turn)
         return end if goal is None else end._replace(place=goal)
 
     def _pinned_place(self, chain: ChainOfBones, share: float) -> complex:
         """Return the place of a pinned rigid part after a share of its way."""
-        first, last = (key[chain.end_part or 0].at(chain.joints[-1]) for key in self.at_keys)
+        first, last = (key[chain.end_part or 0].at(chain.joints[-1]) for key in self.at_ends)
         return first + share * (last - first)
 
     def _parts_to_end(self, chain: ChainOfBones) -> tuple[int, ...]:
@@ -190,25 +216,35 @@ class SegmentBones:
         before = next((each for each in self.chains if chain.parent in each.parts), None)
         return (*(self._parts_to_end(before) if before is not None else ()), *chain.parts)
 
-    def _relative_turn(self, own: int, earlier: int) -> float:
-        """Return by how much a part turns against another from key to key, the shorter way."""
-        angles = [key[own].turn / key[earlier].turn for key in self.at_keys]
-        return phase(angles[1] / angles[0])
+    def _relative_turns(self, own: int, earlier: int) -> Floats:
+        """Return by how much a part is turned against another at the keyframes, float64 (q,).
+
+        It is 0 at the segment's first one, and turns the shorter way from there on.
+        """
+        turns = [key[own].turn / key[earlier].turn for key in self.at_keys]
+        return self._unwrapped(turns, is_body=False)
 
     @property
-    def _body_turn(self) -> float:
-        first, last = (key[0].turn for key in self.at_keys)
-        return phase(last / first) + 2 * pi * self.revolutions
+    def _body_turns(self) -> Floats:
+        """Return by how much the body is turned at the keyframes, as for other parts."""
+        return self._unwrapped([key[0].turn for key in self.at_keys], is_body=True)
+
+    def _unwrapped(self, turns: Sequence[complex], *, is_body: bool) -> Floats:
+        angles = np.zeros(len(turns))
+        for known, other, whole in self._steps:
+            step = phase(turns[other] / turns[known]) + (2 * pi * whole if is_body else 0.0)
+            angles[other] = angles[known] + step
+        return angles
 
     def _end_lack(self, chain: ChainOfBones, time: float, last: RigidPart) -> complex:
         """Return what the last bone lacks to bring the chain's end to its place."""
         if chain.end_part is None:
             return last.turn * complex(last.lack[-1])
         joint, bone, end = chain.joints[-1], chain.parts[-1], chain.end_part
-        lacks = [
-            (key[end].at(joint) - key[bone].at(joint)) / key[bone].turn for key in self.at_keys
-        ]
-        return complex(last.turn * ((1 - time) * lacks[0] + time * lacks[1]))
+        lacks = np.array(
+            [(key[end].at(joint) - key[bone].at(joint)) / key[bone].turn for key in self.at_keys]
+        )
+        return complex(last.turn * (self.time_weights(time) @ lacks))
 
 
 def _brought_to(chain: ChainOfBones, motions: list[RigidPart], goal: complex) -> list[RigidPart]:
