@@ -19,6 +19,10 @@ _MOST_READERS: Final = 4  # open files
 PackedPictures = Mapping[int, PackedPicture]  # by their numbers
 
 
+class BrokenPictureError(LissomError):
+    """A picture of footage that cannot be read, while others can."""
+
+
 class FootageDecoder:
     """Reads footage for the window; for one worker thread.
 
@@ -41,7 +45,8 @@ class FootageDecoder:
 
         Files of an earlier generation are opened again.
 
-        Raises `LissomError` if the footage cannot be read.
+        Raises `LissomError` if the footage cannot be opened, and `BrokenPictureError` if the first
+        picture cannot be read.
         """
         if generation != self._generation:
             self.close()
@@ -52,11 +57,16 @@ class FootageDecoder:
         for number in numbers[:_AT_ONCE]:
             if number in found:
                 continue
-            for decoded in reader.decode_to(number):
-                self.count += 1
-                is_asked = decoded.number == number
-                if is_asked or (decoded.number in asked and len(found) < _MOST_PASSED):
-                    found[decoded.number] = pack_picture(decoded.pixels(), reduction)
+            try:
+                for decoded in reader.decode_to(number):
+                    self.count += 1
+                    is_asked = decoded.number == number
+                    if is_asked or (decoded.number in asked and len(found) < _MOST_PASSED):
+                        found[decoded.number] = pack_picture(decoded.pixels(), reduction)
+            except LissomError as error:
+                if number == numbers[0]:
+                    raise BrokenPictureError(str(error)) from error
+                return found
         return found
 
     def close(self) -> None:
@@ -90,6 +100,9 @@ class FootageCache:
     errors: dict[Footage, LissomError] = field(default_factory=dict)  # why footage is not shown
     # When the files of footage were last changed.
     times: dict[Footage, tuple[int, ...]] = field(default_factory=dict)
+    # What the pictures of a layer's frames depend on, and their numbers, by layer id.
+    numbers: dict[int, tuple[object, list[int]]] = field(default_factory=dict)
+    broken: set[tuple[Footage, int]] = field(default_factory=set)  # pictures that cannot be read
     arrivals: int = 0  # counts the pictures that came after they were needed
     generation: int = 0  # counts the changes of files
     nbytes: int = 0
@@ -108,8 +121,17 @@ class FootageCache:
 
     def lacks(self, footage: Footage, number: int, reduction: int) -> bool:
         """Return whether a picture is not there, or not as fine as with this reduction."""
+        if (footage, number) in self.broken:
+            return False
         packed = self._packed.get(footage, {}).get(number)
         return packed is None or packed.reduction > reduction
+
+    def note_error(self, footage: Footage, number: int, error: LissomError) -> None:
+        """Note why footage, or only a picture of it, cannot be shown. It is not tried again."""
+        if isinstance(error, BrokenPictureError):
+            self.broken.add((footage, number))
+        else:
+            self.errors[footage] = error
 
     def room(self, footage: Footage) -> int:
         """Return how many pictures of footage may be kept, from the mean size of those there."""
@@ -149,16 +171,22 @@ class FootageCache:
         known, self.times[footage] = self.times.get(footage), times
         return known is not None and known != times
 
+    def note_numbers(self, layer: int, source: object, numbers: list[int]) -> None:
+        """Note which pictures the frames of a layer show."""
+        self.numbers[layer] = source, numbers
+
     def keep_only(self, used: Iterable[Footage], layers: Collection[int]) -> None:
         """Forget footage that no layer uses, and shown pictures of other layers."""
         for footage in self._packed.keys() - set(used):
             self.forget(footage)
         self._shown = {layer: each for layer, each in self._shown.items() if layer in layers}
+        self.numbers = {layer: each for layer, each in self.numbers.items() if layer in layers}
 
     def forget(self, footage: Footage) -> None:
         """Forget all pictures of footage, and that it could not be read."""
         self.errors.pop(footage, None)
         self.nbytes -= sum(each.nbytes for each in self._packed.pop(footage, {}).values())
         self._awaited = {each for each in self._awaited if each[0] != footage}
+        self.broken = {each for each in self.broken if each[0] != footage}
         self.arrivals += 1
         self.generation += 1

@@ -111,7 +111,8 @@ def place_as_layer(layer: Layer, replaced: Layer) -> Layer:
 
     The channels of the other layer's handles are left out.
     """
-    replaced = replaced.without_footage()
+    if layer.picture is not replaced.picture:
+        replaced = replaced.without_footage()
     anchor = replaced.anchor
     if anchor is not None:
         anchor = complex(layer.domain.nearest(np.array([anchor]))[0])

@@ -14,6 +14,7 @@ from app.editor.actions.project_files import saving
 from app.editor.actions.timing.channel_keys import insert_channel_key, set_channel_value
 from app.editor.actions.updates.footage_jobs import DECODING
 from app.editor.layering import footage
+from app.editor.layering.deform_groups import bend_layers_as_one
 from app.editor.layering.pictures import drop_files, replace_picture
 from app.storage import copy_footage, load_project, open_footage
 
@@ -237,3 +238,28 @@ def test_collected_footage_makes_the_project_complete(window, project, moving, t
         assert number_of(reader.read(11)) == 11
     # Copies that are there already are used again.
     assert copy_footage(opened, moved / "bar footage") == opened
+
+
+def test_a_damaged_picture_is_named_and_leaves_the_others(window, project, moving, tmp_path):
+    (tmp_path / "walk" / "walk_003.png").write_bytes(b"no picture")
+    project.footage.forget(moving.footage)
+    window.settle()
+    assert any("walk_003.png" in text for text in notices(window))
+    assert moving.footage not in project.footage.errors
+    for frame in (2, 4, 19):
+        playback.scrub(window.session, frame)
+        window.settle()
+        assert shown(project, moving) == frame
+
+
+def test_a_member_of_a_deform_group_shows_footage(window, project, moving):
+    assert project.document.layer(moving.id).still
+    members = [layer.id for layer in project.document.layers]
+    window.act(bend_layers_as_one, *members)
+    window.settle()
+    layer = project.document.layer(moving.id)
+    assert layer.deform_group is not None
+    assert layer.footage == moving.footage
+    playback.scrub(window.session, 7)
+    window.settle()
+    assert shown(project, layer) == 7

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from functools import partial
 from math import floor, log2
 
-from app.document import Document, Footage, Layer, footage_picture_at
+from app.document import Footage, Layer, footage_picture_at
 from app.editor.actions import playback
 from app.editor.error_reports import as_sentence
 from app.editor.project import Project
@@ -16,6 +16,8 @@ from app.texts import _, message_of
 
 DECODING = JobKind(_("Reading footage"), _("The footage cannot be shown"), "footage")
 SMALLEST_SCALE = 1 / 64
+# Frames whose pictures are decoded ahead, and by how many their range moves.
+MOST_AHEAD, STRETCH = 2000, 500
 
 
 @with_project
@@ -48,19 +50,30 @@ def _wanted(
     """
     document, frame = project.document, playback.current_frame(session, project)
     for layer in layers:
-        yield layer, _numbers(document, layer, [frame]), False
+        shown = footage_picture_at(document, layer, frame)
+        yield layer, [] if shown is None else [shown], False
     if not session.settings.prepares_ahead:
         return
     first, last = document.played_frames.first, document.played_frames.last
     here = min(max(int(frame), first), last)
-    ahead = [*range(here, last + 1), *range(first, here)]
+    if last - first >= MOST_AHEAD:
+        first = max(first, here // STRETCH * STRETCH)
+        last = min(last, first + MOST_AHEAD - 1)
     for layer in layers:
-        yield layer, _numbers(document, layer, ahead), True
+        numbers = _all_numbers(project, layer, first, last)
+        yield layer, [*dict.fromkeys([*numbers[here - first :], *numbers[: here - first]])], True
 
 
-def _numbers(document: Document, layer: Layer, frames: list[int]) -> list[int]:
-    found = (footage_picture_at(document, layer, frame) for frame in frames)
-    return list(dict.fromkeys(number for number in found if number is not None))
+def _all_numbers(project: Project, layer: Layer, first: int, last: int) -> list[int]:
+    """Return the pictures of all frames of a range; found again only after a change of its time."""
+    document = project.document
+    source = layer, document.fps, document.frames, document.loop, first, last
+    known = project.footage.numbers.get(layer.id)
+    if known is None or known[0] != source:
+        found = [footage_picture_at(document, layer, frame) for frame in range(first, last + 1)]
+        known = source, [number for number in found if number is not None]
+        project.footage.note_numbers(layer.id, *known)
+    return known[1]
 
 
 def _reduction(session: Session, project: Project) -> int:
@@ -85,7 +98,7 @@ def _job(
     def failed(error: Exception) -> None:
         if not isinstance(error, LissomError):
             error = LissomError(_("{name} cannot be read").format(name=footage.name))
-        cache.errors[footage] = error
+        cache.note_error(footage, lacking[0], error)
         session.notices.show(as_sentence(message_of(error)), tone="error", topic=footage.name)
 
     decode = cache.decoder.decode

@@ -23,6 +23,7 @@ from app.editor.layering.deform_groups import (
     why_not_bend_as_one,
 )
 from app.editor.layering.deletion import delete_layers
+from app.editor.layering.footage import reload_footage
 from app.editor.layering.layer_list import (
     duplicate_layer,
     group_layers,
@@ -121,7 +122,11 @@ def _of_one_layer(project: Project, layer: Layer) -> list[Action]:
         replacement = do(ask_replacement_picture, identity)
         entries += [
             (_("Replace picture…"), icons.ICON_FA_FILE_IMAGE, replacement),
-            (_("Reload layer"), icons.ICON_FA_ARROWS_ROTATE, do(reload_layers, identity)),
+            (
+                _("Reload layer"),
+                icons.ICON_FA_ARROWS_ROTATE,
+                do(reload_layers if layer.footage is None else reload_footage, identity),
+            ),
         ]
     actions = [action for title, icon, action in entries if menu_entry(title, icon)]
     if layer.has_parent and menu_entry(_("Close seam"), icons.ICON_FA_GRIP_LINES_VERTICAL):
