@@ -143,7 +143,7 @@ class MeshExport:
         if moving:
             found.append(
                 _(
-                    "the {format} does not contain footage; {names} stay as their first pictures"
+                    "the {format} does not contain footage; it shows the first picture of {names}"
                 ).format(format=format_.label, names=join_names(moving))
             )
         return (*found, *(() if format_.composites else self._uncomposited(format_.label)))

@@ -151,11 +151,6 @@ def _require_members(document: Document, members: Sequence[Layer]) -> None:
         text = _("{layers} are already in a deform group; part it first")
         raise LissomError(text.format(layers=join_names(bent)))
 
-    moving = [each.name for each in members if each.footage is not None]
-    if moving:
-        text = _("{layers} show footage, which has no shape of its own to bend")
-        raise LissomError(text.format(layers=join_names(moving)))
-
 
 def _has_rig(layer: Layer) -> bool:
     return bool(layer.handles or layer.keys[1:] or layer.attachments)
