@@ -452,6 +452,13 @@ class Layer:
             if handle.id in pose.targets
         }
 
+    def with_cycles_of(self, group: "Layer") -> "Layer":
+        """Return a member whose channels repeat with the cycles of its deform group."""
+        if self.cycles == group.cycles:
+            return self
+        key = replace(self.keys[0], frame=group.keys[0].frame)
+        return replace(self, cycles=group.cycles, keys=(key,))
+
     def _check_membership(self) -> None:
         """Refuse a member of a deform group with a motion of its own."""
         if self.deform_group is None:

@@ -260,7 +260,14 @@ class Document:
             return self
         first, last = changed.keyed_range
         frames = FrameRange(min(self.frames.first, first), max(self.frames.last, last))
-        layers = tuple(changed if layer.id == changed.id else layer for layer in self.layers)
+        layers = tuple(
+            changed
+            if layer.id == changed.id
+            else layer.with_cycles_of(changed)
+            if layer.deform_group == changed.id
+            else layer
+            for layer in self.layers
+        )
         return replace(self, layers=layers, frames=frames)
 
     def attachments_of(self, layer: Layer) -> tuple[Attachment, ...]:

@@ -42,6 +42,9 @@ def _close_seam(session: Session, project: Project, identity: int) -> None:
     if behind.footage is not None:
         text = _("{behind} shows footage, so its picture cannot be extended under {front}.")
         raise LissomError(text.format(behind=behind.name, front=front.name))
+    if document.is_deform_group(behind.id):
+        text = _("{behind} has the pictures of its members. Draw them on under {front} instead.")
+        raise LissomError(text.format(behind=behind.name, front=front.name))
     placed = [
         PlacedPicture(project.runtimes.layers[each.id].picture.rgba, each.corner)
         for each in (behind, front)

@@ -17,13 +17,17 @@ from app.document import (
     Document,
     DrawOrder,
     ExportSettings,
+    FrameRange,
     Meshing,
+    cycle_commands,
     deform_group_commands,
     group_commands,
     handle_commands,
     key_commands,
     layer_commands,
+    opacity_at,
 )
+from app.document.commands import scene_commands
 from app.document.keyframe import Target
 from app.errors import LissomError
 from app.export import ExportRequest, FrameRenderer, plan_export
@@ -387,3 +391,16 @@ def test_layers_that_lie_on_each_other_are_suggested(opened):
     assert suggest_deform_groups(document, pictures) == (tuple(ids(document, NAMES)),)
     hidden = layer_commands.set_hidden(by_name(document, "ink").id, hidden=True)(document)
     assert suggest_deform_groups(hidden, pictures) == ()
+
+
+def test_channels_of_members_repeat_with_the_cycles_of_their_group(bent):
+    document, _ = bent
+    group, ink = by_name(document, "fish"), by_name(document, "ink")
+    keys = (OPACITY.key(0, 1.0), OPACITY.key(10, 0.5), OPACITY.key(20, 1.0))
+    document = document.with_layer(ink.with_keys_of(OPACITY, keys))
+    document = key_commands.insert_key(group.id, 20, group.keys[0].pose)(document)
+    document = scene_commands.set_frames(FrameRange(0, 60))(document)
+    document = cycle_commands.set_cycle(group.id, 0, 20, 60)(document)
+    ink = document.layer(ink.id)
+    assert ink.cycles == document.layer(group.id).cycles
+    assert opacity_at(document, ink, 50) == pytest.approx(0.5)

@@ -34,7 +34,7 @@ def bend_as_one(
     heir : int or None
         Id of the member whose handles and keys the group takes over.
     """
-    bent = {each.id: _as_member(document, each, group.id) for each in members}
+    bent = {each.id: _as_member(document, each, group.id).with_cycles_of(group) for each in members}
     order = [layer for layer in document.layers if layer.id in bent]
     place = document.layers.index(order[-1])
     path = order[0].group
