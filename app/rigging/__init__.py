@@ -9,10 +9,16 @@ Imports: `engine`.
 from app.rigging.anatomy.handle_places import suggest_handles as suggest_handles
 from app.rigging.anatomy.joints import suggest_joints as suggest_joints
 from app.rigging.anatomy.kind_guess import guess_kind as guess_kind
-from app.rigging.anatomy.near_limbs import (
+from app.rigging.anatomy.lines.leg_tracks import TrackedLeg as TrackedLeg, track_legs as track_legs
+from app.rigging.anatomy.lines.near_limbs import (
+    NearLimb as NearLimb,
     guess_near_limbs as guess_near_limbs,
     name_near_limbs as name_near_limbs,
     swap_limbs as swap_limbs,
+)
+from app.rigging.anatomy.lines.tracked_joints import (
+    find_kind_by_legs as find_kind_by_legs,
+    with_tracked_legs as with_tracked_legs,
 )
 from app.rigging.kinematics.chains import bend_side as bend_side, solve_chain as solve_chain
 from app.rigging.kinematics.recordings import FittedKeys as FittedKeys, fit_keys as fit_keys

@@ -22,6 +22,7 @@ from app.solving.motion_preset.body_rig import rig_body as rig_body
 from app.solving.motion_preset.joint_guess import (
     JointGuess as JointGuess,
     guess_joints as guess_joints,
+    guess_layer_kind as guess_layer_kind,
 )
 from app.solving.motion_preset.joints_file import (
     JointsFile as JointsFile,

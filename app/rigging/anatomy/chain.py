@@ -1,4 +1,6 @@
-"""Recognition of chains, and their joints along the longest path."""
+"""Recognition of chains and tails, and their joints along a path."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,6 +19,9 @@ FEWEST, USUAL, MOST = 4, 7, 16
 TURN = 0.8  # largest angle in radians from joint to joint, if that many joints suffice
 # The head is the end that is this many times as thick as the other.
 THICKER = 1.15
+# Radii of a body around the thickest place from which a tail leaves it, to the tail's base.
+TAIL_BASE = 1.05
+TAIL_BONE, MOST_TAIL_BONES = 1.1, 4  # length of its bones in thicknesses, and their number
 ENDS = 0.15  # share of the length at each end
 WINDOW = 8  # nodes over which a direction is measured
 
@@ -46,6 +51,33 @@ def suggest_chain_joints(plan: BodyPlan) -> dict[str, complex]:
         f"joint.{number}": complex(places[round(at)])
         for number, at in enumerate(at_joints.tolist(), 1)
     }
+
+
+def find_tail(plan: BodyPlan, start: int, end: int) -> list[complex]:
+    """Return the joints of a tail that leaves the body at a node, from its base to its tip.
+
+    A long, thin tail has more joints.
+    """
+    way = plan.between(start, end)
+    nodes, tip = way.tolist(), plan.handle_node(end)
+    places, radii = plan.places[way], plan.radii[way]
+    last = nodes.index(tip) if tip in nodes else len(nodes) - 1
+    thick = int(radii.argmax())
+    within = np.abs(places - places[thick]) <= TAIL_BASE * radii[thick]
+    first = min(int(np.flatnonzero(within)[-1]) + 1, max(last - 1, 0))
+    places, radii = places[first : last + 1], radii[first : last + 1]
+    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+    bones = round(float(lengths[-1]) / (TAIL_BONE * 2 * float(np.median(radii))))
+    shares = np.linspace(0.0, 1.0, 1 + min(max(bones, 1), MOST_TAIL_BONES)) * lengths[-1]
+    return [complex(places[np.abs(lengths - share).argmin()]) for share in shares]
+
+
+def name_tail_joints(tail: Sequence[complex]) -> dict[str, complex]:
+    """Return the joints of a tail by name."""
+    if not tail:
+        return {}
+    numbered = {f"tail.{number}": at for number, at in enumerate(tail[:-1], 1)}
+    return {**numbered, "tail": tail[-1]}
 
 
 def _count(places: Complexes, radii: Floats, lengths: Floats) -> int:

@@ -6,7 +6,7 @@ import numpy as np
 
 from app.rigging.anatomy.anatomy import bend_share, joint_share, neck_along
 from app.rigging.anatomy.body_plan import BodyPlan
-from app.rigging.anatomy.chain import suggest_chain_joints
+from app.rigging.anatomy.chain import find_tail, name_tail_joints, suggest_chain_joints
 from app.rigging.anatomy.legs import PlannedLeg
 from app.rigging.motions.kinds import BodyKind
 from engine.arrays import Complexes, Floats, Indices
@@ -151,8 +151,7 @@ def _standing(plan: BodyPlan, *, is_frontal: bool) -> dict[str, complex]:
     arms, tail = _arms_and_tail(plan, way, top, is_frontal=is_frontal)
     arms += [(hips, _limb(plan, hips, int(leg.path[-1]), leg.ankle)) for leg in plan.legs[1:-1]]
     found |= _sides(plan, arms, ("shoulder", "elbow", "hand"), is_frontal=is_frontal)
-    if tail is not None:
-        found["tail"] = tail
+    found |= name_tail_joints(tail)
     roots = [limb[0] for _, limb in arms]
     found["chest"] = _chest(way, top, found["hips"], roots)
     return _with_neck_apart(found)
@@ -192,8 +191,8 @@ def _sides(
 
 def _arms_and_tail(
     plan: BodyPlan, way: _JointPath, top: int, *, is_frontal: bool
-) -> tuple[list[tuple[int, tuple[complex, complex, complex]]], complex | None]:
-    """Return the limbs that leave the trunk above, and the tip of the longest one below."""
+) -> tuple[list[tuple[int, tuple[complex, complex, complex]]], list[complex]]:
+    """Return the limbs that leave the trunk above, and the joints of the longest one below."""
     nodes, arms, tails = way.nodes.tolist(), [], []
     for end in plan.others:
         if end == plan.head_end:
@@ -211,8 +210,8 @@ def _arms_and_tail(
         if share >= LOWEST_ARM or (is_level and (is_frontal or not is_behind)):
             arms.append((fork, limb))
         elif abs(tip - root) >= LEAST_TAIL * plan.tall:
-            tails.append((abs(tip - root), tip))
-    return arms, max(tails, key=lambda tail: tail[0])[1] if tails else None
+            tails.append((abs(tip - root), find_tail(plan, fork, end)))
+    return arms, max(tails, key=lambda tail: tail[0])[1] if tails else []
 
 
 def _hips(plan: BodyPlan, node: int, legs: list[PlannedLeg]) -> complex:
@@ -286,6 +285,6 @@ def _lying(plan: BodyPlan) -> dict[str, complex]:
         tip = max(ahead, key=lambda end: plan.facing * plan.places[end].real)
         found |= _head(plan, _JointPath(plan, plan.between(chest, tip)), is_frontal=False)[0]
     if behind:
-        tails = [_limb(plan, hips, end, plan.handle_node(end)) for end in behind]
-        found["tail"] = max(tails, key=lambda limb: abs(limb[2] - limb[0]))[2]
+        tails = [find_tail(plan, hips, end) for end in behind]
+        found |= name_tail_joints(max(tails, key=lambda tail: abs(tail[-1] - tail[0])))
     return _with_neck_apart(found)

@@ -40,6 +40,9 @@ class Body:
         The lower left and the upper right corner of the drawing.
     facing : int
         1 if the drawing faces right or the viewer, -1 if it faces left.
+    crotch_room : mapping of str to float
+        By feet of a pair of legs that are one above their crotch: distance of the legs there, in
+        pixels, more if the crotch is near their roots.
 
     Raises
     ------
@@ -52,6 +55,7 @@ class Body:
     joints: Mapping[str, complex]
     box: tuple[complex, complex]
     facing: int = 1
+    crotch_room: Mapping[str, float] = field(default_factory=dict)
     parents: Mapping[str, str] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -82,7 +86,8 @@ class Body:
     def mirrored(self) -> Self:
         """Return the body with its sides swapped, facing the other way."""
         joints = {other_side(name): place for name, place in self.joints.items()}
-        return replace(self, joints=joints, facing=-self.facing)
+        room = {other_side(name): room for name, room in self.crotch_room.items()}
+        return replace(self, joints=joints, crotch_room=room, facing=-self.facing)
 
     def limb_joints(self, tip: str) -> tuple[str, ...]:
         """Return the joints of an arm or a leg from its root on the trunk to its tip."""
@@ -91,6 +96,11 @@ class Body:
         while path[-1] and without_side(path[-1]) not in {"hip", "shoulder", "hips", "chest"}:
             path.append(self.parents[path[-1]])
         return tuple(name for name in reversed(path) if name)
+
+    @property
+    def tail(self) -> tuple[str, ...]:
+        """The joints of the tail from its base to its tip; only the tip of a tail without bones."""
+        return tuple(name for name in self.joints if name.partition(".")[0] == "tail")
 
     def path_length(self, joints: Iterable[str]) -> float:
         names = list(joints)

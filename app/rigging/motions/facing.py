@@ -43,8 +43,8 @@ def guess_facing(kind: BodyKind, joints: Mapping[str, complex], outline: Complex
         *(3 * way for way in _between(joints, "hips", "head")),
         *(2 * way for way in _between(joints, "hips", "chest") if kind.name == "four-legs"),
         *_between(joints, "tail", "hips"),
-        *(2 * _beyond(outline, joints[name]) for name in ("foot.L", "foot.R") if name in joints),
-        *(2 * _beyond(outline, joints[name]) for name in ("head",) if name in joints),
+        6 * _beyond(outline, [joints[name] for name in ("foot.L", "foot.R") if name in joints]),
+        2 * _beyond(outline, [joints[name] for name in ("head",) if name in joints]),
     ]
     if kind.name == "biped-side":
         ways += [2 * way for side in "LR" for way in _bent(joints, side)]
@@ -68,9 +68,16 @@ def _bent(joints: Mapping[str, complex], side: str) -> list[float]:
     return [(knee - root - share * (foot - root)).real]
 
 
-def _beyond(outline: Complexes, joint: complex) -> float:
-    """Return how much farther the outline around a joint reaches to the right than to the left."""
+def _beyond(outline: Complexes, joints: list[complex]) -> float:
+    """Return how much farther the outline around joints reaches to the right than to the left."""
     near = AROUND * float(np.ptp(outline.imag))
-    beside = outline[np.abs(outline.imag - joint.imag) < near / 2].real - joint.real
-    beside = beside[np.abs(beside) < 2 * near]
-    return float(beside.max() + beside.min()) if len(beside) else 0.0
+    beside = [outline[np.abs(outline.imag - joint.imag) < near / 2].real for joint in joints]
+    beside = [
+        places[np.abs(places - joint.real) < 2 * near]
+        for places, joint in zip(beside, joints, strict=True)
+    ]
+    around = np.concatenate([np.zeros(0), *beside])
+    if not len(around):
+        return 0.0
+    ends = [joint.real for joint in joints]
+    return float((around.max() - max(ends)) - (min(ends) - around.min()))

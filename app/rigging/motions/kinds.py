@@ -7,7 +7,15 @@ from types import MappingProxyType
 from app.texts import _
 from engine.errors import EngineError
 
-_TRUNK = {"hips": "", "chest": "hips", "neck": "chest", "head": "neck", "tail": "hips"}
+_TRUNK = {"hips": "", "chest": "hips", "neck": "chest", "head": "neck"}
+# A tail has up to four bones: from its base, tail.1, to its tip, tail.
+_TAIL = {
+    "tail.1": "hips",
+    "tail.2": "tail.1",
+    "tail.3": "tail.2",
+    "tail.4": "tail.3",
+    "tail": "tail.4",
+}
 _ARMS = {
     "shoulder.L": "chest",
     "elbow.L": "shoulder.L",
@@ -24,7 +32,7 @@ _LEGS = {
     "knee.R": "hip.R",
     "foot.R": "knee.R",
 }
-_BODY: Mapping[str, str] = MappingProxyType(_TRUNK | _ARMS | _LEGS)
+_BODY: Mapping[str, str] = MappingProxyType(_TRUNK | _TAIL | _ARMS | _LEGS)
 _LINKS: Mapping[str, str] = MappingProxyType(
     {
         "joint.1": "",

@@ -16,6 +16,9 @@ from app.rigging.motions.timing import EVEN, Timing
 
 FEET = (("foot.L", 0.0), ("foot.R", 0.0))
 STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, landings=FEET, gathered=0.0, straight=0.998)
+# A tail of several bones swings by this factor more than one that turns at the hips, and its last
+# bone is later than its first by this share of the cycle.
+TAIL_SWING, TAIL_LAG = 2.2, 0.25
 LEVEL_HEAD = 0.7  # of the trunk's lean, by which the head turns back
 SAMPLES = 96  # of a cycle, at which the lowest position of the hips is searched
 
@@ -134,6 +137,8 @@ class _LimbInstance(MotionInstance):
 
     def _turn(self, name: str, phase: float) -> float:
         """Return the rotation of a joint's bone against its parent bone, in radians."""
+        if name in self.body.tail and len(self.body.tail) > 1:
+            return self._tail_turn(name, phase)
         template, kept = self.template, without_side(name)
         has_side = kept != name
         late = template.lag if name.endswith(".R") else 0.0
@@ -163,6 +168,19 @@ class _LimbInstance(MotionInstance):
             "tail": of.tail_delay,
         }
         return delays.get(joint, 0.0)
+
+    def _tail_turn(self, name: str, phase: float) -> float:
+        """Return the rotation of a bone of the tail: each follows the one before it."""
+        curve, joints = self.template.turns.get("tail"), self.body.tail
+        if curve is None and self.body.kind.name != "biped-front":
+            curve = self.template.leans.get("tail")
+        number = joints.index(name)
+        if curve is None or number == 0:
+            return 0.0  # its base is a part of the body
+        bones, of = len(joints) - 1, self.parameters
+        late = of.tail_delay + TAIL_LAG * (number - 1) / bones
+        share = TAIL_SWING * 2 * number / (bones * (bones + 1))
+        return self.body.facing * of.size * of.energy * share * math.radians(curve(phase - late))
 
     def _lean(self, joint: str) -> float:
         """Return how far a joint turns as the trunk leans forwards; the head stays upright."""

@@ -13,6 +13,11 @@ GROUND = 0.3  # of a leg's length: feet drawn no higher than this above the lowe
 # Of a leg's length: the hips come down at most this much for a long step, else the step becomes
 # shorter. Without the limit the body would crouch, with all legs bent.
 LOWERED, SHORTER = 0.08, 0.9
+# Lengths of a leg by which the feet of a pair of free legs may come nearer than they are drawn, and
+# farther apart; and the same for legs that are one above their crotch, in room there.
+FREE_CLOSING, FREE_OPENING = 0.6, 0.9
+CLOSING, OPENING = 0.03, 0.5
+SAMPLES = 48  # of a cycle
 SHORTEST = 0.1  # of a leg's length: shortest step
 
 
@@ -36,6 +41,8 @@ class FootSteps:
         self.step = gait.stride * gait.stance * self.size * self.reach
         while self.step > SHORTEST * self.reach and self._most_lowered() > LOWERED:
             self.step *= SHORTER
+        if body.kind.is_side_view and gait.stride:
+            self._keep_pairs_open()
 
     @property
     def stride(self) -> float:
@@ -73,6 +80,54 @@ class FootSteps:
                 tip = complex(self.middles[foot] + way * self.step / 2, self.ground[foot])
                 lowered.append(required_drop(leg, root, tip, self.gait.straight))
         return max(lowered) / self.reach
+
+    def _keep_pairs_open(self) -> None:
+        """Shorten the steps, and part the legs of a pair, until its crotch can follow.
+
+        Legs of one drawing grow together above. They open more easily than they cross.
+        """
+        pairs = [
+            (foot, other_side(foot))
+            for foot in self.legs
+            if other_side(foot) in self.legs and self._ahead(foot) > self._ahead(other_side(foot))
+        ]
+        for pair in pairs:
+            passing = sum(self._passing(*pair))
+            if passing > 0:
+                room = sum(self._room(*pair))
+                self.step = min(self.step, self.gait.stance * room / passing)
+        for one, other in pairs:
+            behind, _ = self._passing(one, other)
+            drawn = self._ahead(one) - self._ahead(other)
+            gathered = drawn - self.body.facing * (self.middles[one] - self.middles[other])
+            apart = gathered + behind * self.stride - self._room(one, other)[0]
+            if apart > 0:
+                self.middles[one] += self.body.facing * apart / 2
+                self.middles[other] -= self.body.facing * apart / 2
+
+    def _passing(self, one: str, other: str) -> tuple[float, float]:
+        """Return how far a foot comes behind and ahead of another, from its mean, in strides."""
+        phases = (np.arange(SAMPLES) / SAMPLES).tolist()
+        ahead = np.array(
+            [
+                self.gait.ahead(one, phase, self.timing)
+                - self.gait.ahead(other, phase, self.timing)
+                for phase in phases
+            ]
+        )
+        return float(-ahead.min()), float(ahead.max())
+
+    def _room(self, one: str, other: str) -> tuple[float, float]:
+        """Return how far the feet of a pair can come nearer than they are drawn, and farther."""
+        length = (self.legs[one].length + self.legs[other].length) / 2
+        room = self.body.crotch_room.get(one, np.inf)
+        return min(FREE_CLOSING * length, CLOSING * room), min(
+            FREE_OPENING * length, OPENING * room
+        )
+
+    def _ahead(self, foot: str) -> float:
+        """Return how far ahead a foot is drawn."""
+        return self.body.facing * self.body.joints[foot].real
 
     def _middles(self) -> dict[str, float]:
         """Return the centre of each foot's movement.

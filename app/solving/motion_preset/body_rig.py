@@ -56,10 +56,11 @@ def rig_body(
 
 
 def find_bones(body: Body) -> Iterator[tuple[str, str]]:
-    """Yield the bones of a body's limbs, of its head and of a chain, each from root to end."""
+    """Yield the bones of a body's limbs, tail and head, and of a chain, each from root to end."""
     for end in ("foot.L", "foot.R", "hand.L", "hand.R"):
         if end in body.joints:
             yield from pairwise(body.limb_joints(end))
+    yield from pairwise(body.tail)
     if "neck" in body.joints and "head" in body.joints:
         yield "neck", "head"
     if body.kind.name == "chain":

@@ -1,16 +1,24 @@
-"""The joints of a layer, guessed from its shape and its picture."""
+"""The kind and the joints of a layer, guessed from its shape and its picture."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
 
+import numpy as np
+
 from app.document import Layer
 from app.rigging import (
+    BodyKind,
+    NearLimb,
     find_kind,
+    find_kind_by_legs,
     guess_facing,
+    guess_kind,
     guess_near_limbs,
     name_near_limbs,
     near_side,
     suggest_joints,
+    track_legs,
+    with_tracked_legs,
 )
 from engine.arrays import Bytes
 
@@ -25,15 +33,31 @@ class JointGuess(NamedTuple):
     unsure: tuple[str, ...] = ()
 
 
+def guess_layer_kind(layer: Layer, rgba: Bytes | None) -> BodyKind:
+    """Return the kind of body that a layer looks like."""
+    loops = layer.domain.loops
+    kind = guess_kind(loops)
+    if kind.name != "chain" or rgba is None:
+        return kind
+    return find_kind_by_legs(kind, track_legs(loops, rgba, layer.corner))
+
+
 def guess_joints(layer: Layer, kind: str, rgba: Bytes | None) -> JointGuess:
-    """Return the joints of a kind of body in a layer; from the side, near limbs by the picture."""
+    """Return the joints of a kind of body in a layer: legs and near limbs by the picture."""
     body, loops = find_kind(kind), layer.domain.loops
     joints = suggest_joints(loops, body)
-    if rgba is None or not body.is_side_view or not joints:
+    if rgba is None or "foot.L" not in body.parents or not joints:
         return JointGuess(joints)
+    legs = track_legs(loops, rgba, layer.corner)
     facing = guess_facing(body, joints, loops[0])
-    found = guess_near_limbs(loops, joints, rgba, layer.corner)
-    named = name_near_limbs(joints, found, facing)
+    tracked = with_tracked_legs(joints, body, legs, facing)
+    places = layer.domain.nearest(np.array([*tracked.values()])).tolist()
+    joints = dict(zip(tracked, places, strict=True))
+    found: tuple[NearLimb, ...] = ()
+    if body.is_side_view:
+        facing = guess_facing(body, joints, loops[0])
+        found = guess_near_limbs(loops, joints, rgba, layer.corner)
+        joints = name_near_limbs(joints, found, facing)
     unsure = (limb.near.rpartition(".")[0] for limb in found if not limb.is_sure)
-    ordered = {name: named[name] for name in body.parents if name in named}
+    ordered = {name: joints[name] for name in body.parents if name in joints}
     return JointGuess(ordered, tuple(f"{end}.{near_side(facing)}" for end in unsure))

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from app.document import Layer
 from app.errors import LissomError
-from app.rigging import Motion, find_kind, guess_kind
-from app.solving.motion_preset.joint_guess import guess_joints
+from app.rigging import Motion, find_kind
+from app.solving.motion_preset.joint_guess import guess_joints, guess_layer_kind
 from app.storage import as_object, as_point, as_text, load_json, repr_for_error
 from app.texts import _
 from engine.arrays import Bytes
@@ -34,7 +34,7 @@ def find_joints(
     layer: Layer, motion: Motion, given: JointsFile, rgba: Bytes | None = None
 ) -> LayerJoints:
     """Return the kind and the joints of a drawing, guessed from its picture if not given."""
-    loops, kind = layer.domain.loops, given.kind
+    kind = given.kind
     if kind is None:
         if given.joints:
             raise LissomError(
@@ -43,7 +43,7 @@ def find_joints(
                     "--kind"
                 )
             )
-        kind = guess_kind(loops).name
+        kind = guess_layer_kind(layer, rgba).name
         if kind not in motion.kinds and WHOLE in motion.kinds:
             kind = WHOLE
     joints = given.joints

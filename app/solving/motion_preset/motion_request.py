@@ -1,18 +1,29 @@
 """Requested motion preset of a layer, and the handles at its joints."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from app.document import Layer, MotionEdits
 from app.errors import LissomError
-from app.rigging import Body, Motion, Parameters, find_kind, find_motion, guess_facing
+from app.rigging import (
+    Body,
+    Motion,
+    Parameters,
+    find_kind,
+    find_motion,
+    guess_facing,
+    other_side,
+)
 from app.solving.motion_preset.rigid_points import find_rigid_points
 from app.texts import _
 from engine.arrays import Complexes
 from engine.geometry import diameter
 
+SHARES = np.linspace(0.0, 1.0, 41)  # of a limb from its root
+BETWEEN = np.linspace(0.0, 1.0, 15)  # from one limb of a pair to the other
+NEAR_ROOT = 1.5  # power by which room grows as the crotch is nearer to the roots
 BESIDE = 0.01  # of the drawing's diameter: a joint this far outside moves to the outline
 
 
@@ -66,12 +77,36 @@ def find_rest_body(layer: Layer, order: MotionRequest) -> Body:
     if kind.parents:
         kind.require_joints(joints)
         joints = _on_drawing(layer, joints)
-    return Body(
+    body = Body(
         kind=kind,
         joints=joints,
         box=(complex(x.min(), y.min()), complex(x.max(), y.max())),
         facing=find_facing(layer, order),
     )
+    return replace(body, crotch_room=_find_crotch_rooms(layer, body))
+
+
+def _find_crotch_rooms(layer: Layer, body: Body) -> dict[str, float]:
+    """Return the room at the crotch of each pair of legs that are one above it."""
+    rooms = dict[str, float]()
+    for foot in ("foot.L", "hand.L"):
+        pair = foot, other_side(foot)
+        if not all(name in body.joints for name in pair):
+            continue
+        one, other = (_along_limb(body, name) for name in pair)
+        between = one + BETWEEN[:, None] * (other - one)
+        inside = layer.domain.contains(between.ravel()).reshape(between.shape).all(axis=0)
+        crotch = int((~inside).argmax()) if not inside.all() else len(SHARES) - 1
+        if crotch > 0:
+            room = float(abs(other[crotch] - one[crotch]) / SHARES[crotch] ** NEAR_ROOT)
+            rooms |= dict.fromkeys(pair, room)
+    return rooms
+
+
+def _along_limb(body: Body, end: str) -> Complexes:
+    places = np.array([body.joints[name] for name in body.limb_joints(end)])
+    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+    return np.asarray(np.interp(SHARES * lengths[-1], lengths, places))
 
 
 def _on_drawing(layer: Layer, joints: Mapping[str, complex]) -> dict[str, complex]:

@@ -265,7 +265,8 @@ def solve_key_pose(rig: Rig, begin: Pose, moment: JointKeyPose) -> Pose:
     for limb in rig.limbs.limbs if rig.limbs is not None else ():
         # Knees follow their feet; a knee with a target of its own would carry a foot that stands.
         for joint in limb.chain.handles[1:-1]:
-            targets[joint] = replace(begin.targets[joint], side=targets[joint].side)
+            if targets[joint].side is not None:
+                targets[joint] = replace(begin.targets[joint], side=targets[joint].side)
     return DragSolver.begin(rig, begin).step_towards(targets, MOST_STEPS).make_pose(targets)
 
 

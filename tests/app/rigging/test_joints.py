@@ -1,5 +1,7 @@
 """What kind of body a shape looks like, and where its joints may be."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import shapely
@@ -13,8 +15,11 @@ from app.rigging import (
     name_near_limbs,
     near_side,
     suggest_joints,
+    track_legs,
+    with_tracked_legs,
 )
-from app.rigging.anatomy.near_limbs import NearLimb
+from app.rigging.anatomy.lines.leg_tracks import TrackedLeg
+from app.rigging.anatomy.lines.near_limbs import NearLimb
 from engine.geometry import contains, signed_area
 
 
@@ -172,3 +177,44 @@ def test_near_limbs_are_named_after_the_near_side(facing):
     named = name_near_limbs(joints, [NearLimb("foot.L", is_sure=True)], facing)
     assert named[f"foot.{near_side(facing)}"] == joints["foot.L"]
     assert set(named.values()) == set(joints.values())
+
+
+def joined_legs(*, has_line):
+    """Return a body on two legs that are one block, which a line may part, and its picture."""
+    outline = np.array(
+        [60, 140, 140 + 150j, 240 + 150j, 240 + 300j, -40 + 300j, -40 + 150j, 60 + 150j]
+    )
+    rgba = np.full((340, 340, 4), 200, np.uint8)
+    if has_line:
+        rgba[340 - 170 : 340 - 20, 148:153, :3] = 20
+    return [outline], rgba, complex(-50, -20)
+
+
+def test_a_line_parts_two_legs_of_one_silhouette():
+    legs = track_legs(*joined_legs(has_line=True))
+    assert [round(leg.foot.real / 10) for leg in legs] == [8, 12]
+    for leg in legs:
+        assert leg.foot.imag < leg.knee.imag < leg.root.imag <= 150
+    assert len(track_legs(*joined_legs(has_line=False))) < 2
+
+
+def test_tracked_legs_replace_the_silhouettes_and_leave_a_raised_limb_as_an_arm():
+    legs = [TrackedLeg(at + 100j, at + 50j, at) for at in (0.0, 30.0)]
+    joints = {"hips": 20 + 140j, "chest": 20 + 180j, "hip.R": 160j, "foot.R": -40 + 130j}
+    found = with_tracked_legs(joints, find_kind("biped-side"), legs, 1)
+    assert found["foot.L"] == 30
+    assert found["foot.R"] == 0
+    assert found["hand.L"] == -40 + 130j
+    assert found["hips"].imag > 100
+    mirrored = with_tracked_legs(joints, find_kind("biped-side"), legs, -1)
+    assert mirrored["foot.L"] == 0
+    assert with_tracked_legs(joints, find_kind("four-legs"), legs, 1) == joints
+
+
+def test_a_long_thin_tail_has_a_chain_from_its_base_outside_the_body():
+    horse = drawn(*HORSE, ([-150 + 210j, -300 + 150j, -420 + 170j], 24))
+    joints = suggested(horse, "four-legs")
+    tail = [at for name, at in joints.items() if name.startswith("tail")]
+    assert len(tail) > 2
+    assert list(joints)[-1] != "tail"
+    assert all(other.real < one.real for one, other in pairwise(tail))

@@ -213,3 +213,33 @@ def test_parameters_have_ranges():
         find_kind("centaur")
     with pytest.raises(EngineError, match="'chain' has no joint 'wing'"):
         Body(kind=find_kind("chain"), joints={"wing": 0j}, box=(0j, 1 + 1j))
+
+
+def test_bones_of_a_tail_follow_one_another_from_a_base_that_the_body_carries():
+    rest = body("four-legs")
+    tip, hips = rest.joints["tail"], rest.joints["hips"]
+    between = {f"tail.{n}": hips + n / 4 * (tip - hips) for n in (1, 2, 3)}
+    chained = replace(rest, joints={**rest.joints, **between})
+    assert chained.tail == ("tail.1", "tail.2", "tail.3", "tail")
+    shares = np.linspace(0, 1, 97)
+    moved = places("walk", "four-legs", shares, of=chained)
+    assert_allclose(moved["tail.1"] - moved["hips"], between["tail.1"] - hips, atol=1e-9 * SIZE)
+    late = []
+    for one, other in pairwise(chained.tail):
+        bone = chained.joints[other] - chained.joints[one]
+        turned = np.angle((moved[other] - moved[one]) / bone)
+        late.append(int(turned[:-1].argmax()))
+    assert late == sorted(late)
+    assert late[0] < late[-1]
+
+
+def test_legs_that_are_one_above_their_crotch_part_before_they_close():
+    rest = body("four-legs")
+    shares = np.linspace(0, 1, 49)
+    free = places("walk", "four-legs", shares)
+    room = dict.fromkeys(("foot.L", "foot.R"), 0.3 * SIZE)
+    tight = places("walk", "four-legs", shares, of=replace(rest, crotch_room=room))
+    assert np.ptp(tight["foot.L"].real) < np.ptp(free["foot.L"].real)
+    drawn_apart = abs(rest.joints["foot.L"].real - rest.joints["foot.R"].real)
+    nearest = np.abs(tight["foot.L"].real - tight["foot.R"].real).min()
+    assert nearest > drawn_apart - 0.05 * SIZE

@@ -74,9 +74,21 @@ _FOUR = {
     "hand.L": (0.38, 0.04),
 }
 PLACES: Mapping[str, Mapping[str, tuple[float, float]]] = {
-    "biped-front": {**_FRONT, **_OTHERS},
-    "biped-side": _SIDE,
-    "four-legs": _FOUR,
+    kind: {
+        **places,
+        **{
+            f"tail.{number}": (
+                places["hips"][0] + number / 5 * (places["tail"][0] - places["hips"][0]),
+                places["hips"][1] + number / 5 * (places["tail"][1] - places["hips"][1]),
+            )
+            for number in range(1, 5)
+        },
+    }
+    for kind, places in (
+        ("biped-front", {**_FRONT, **_OTHERS}),
+        ("biped-side", _SIDE),
+        ("four-legs", _FOUR),
+    )
 }
 # Missing joints that the diagram shows in addition to the usual ones.
 OFFERED = ("neck", "tail")

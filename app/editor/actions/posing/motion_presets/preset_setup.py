@@ -11,7 +11,8 @@ from app.editor.actions.posing.motion_presets.joint_placement import find_joints
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.motion_setup import MotionSetup
-from app.rigging import MOTIONS, Parameters, guess_kind
+from app.rigging import MOTIONS, Parameters
+from app.solving import guess_layer_kind
 from app.texts import _, ngettext
 
 MOST_ROUNDS = 50
@@ -107,7 +108,7 @@ def new_motion_setup(project: Project, layer: Layer, frame: int) -> MotionSetup:
     if earlier:
         draft = setup_of_applied_motion(project, layer, earlier[-1])
         return replace(draft, applied_motion=None, first=frame, parameters=Parameters(), rounds=1)
-    kind = guess_kind(layer.domain.loops)
+    kind = guess_layer_kind(layer, project.runtimes.layers[layer.id].picture.rgba)
     guess = find_joints(project, layer, kind.name)
     return MotionSetup(
         layer=layer.id,

@@ -1,0 +1,85 @@
+"""Joints of a body whose legs were followed along the lines of its drawing."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from app.rigging.anatomy.lines.leg_tracks import TrackedLeg
+from app.rigging.motions.kinds import BodyKind, find_kind
+
+LEG = ("hip", "knee", "foot")
+FRONT_LEG = ("shoulder", "elbow", "hand")
+PELVIS = 0.22  # of a leg's length: height of the hips above the roots of both legs
+
+
+def find_kind_by_legs(kind: BodyKind, legs: Sequence[TrackedLeg]) -> BodyKind:
+    """Return the kind of a body that looks like a chain as long as its legs are taken for one."""
+    return find_kind("biped-side") if kind.name == "chain" and len(legs) == 2 else kind
+
+
+def with_tracked_legs(
+    joints: Mapping[str, complex], kind: BodyKind, legs: Sequence[TrackedLeg], facing: int
+) -> dict[str, complex]:
+    """Return the joints with these legs in place of those that the silhouette showed.
+
+    `legs` are in order from the left. If their number does not fit the kind, the joints stay.
+    """
+    if kind.name == "four-legs":
+        if len(legs) not in (3, 4):
+            return dict(joints)
+        gaps = np.diff([leg.foot.real for leg in legs])
+        parted = int(gaps.argmax()) + 1
+        pairs = [legs[:parted], legs[parted:]]
+        if max(map(len, pairs)) > 2:
+            return dict(joints)
+        hind, front = pairs if facing > 0 else pairs[::-1]
+        return _placed(joints, {LEG: hind, FRONT_LEG: front}, facing)
+    if len(legs) != 2 or not kind.name.startswith("biped"):
+        return dict(joints)
+    found = _with_arms_apart(joints, legs)
+    found = _placed(found, {LEG: legs}, facing if kind.is_side_view else 1)
+    if kind.is_side_view:
+        found = {name: at for name, at in found.items() if not _is_in_foot(name, at, legs)}
+        roots = [leg.root for leg in legs]
+        long = float(np.mean([abs(leg.root - leg.foot) for leg in legs]))
+        found["hips"] = sum(roots) / len(roots) + 1j * PELVIS * long
+    return found
+
+
+def _is_in_foot(name: str, place: complex, legs: Sequence[TrackedLeg]) -> bool:
+    """Whether a tail is a foot that the silhouette showed apart."""
+    return name.startswith("tail") and place.imag <= max(leg.foot.imag for leg in legs)
+
+
+def _placed(
+    joints: Mapping[str, complex],
+    pairs: Mapping[tuple[str, str, str], Sequence[TrackedLeg]],
+    facing: int,
+) -> dict[str, complex]:
+    """Return the joints with pairs of legs, the leg ahead named L."""
+    replaced = {name for names in pairs for name in names}
+    found = {name: at for name, at in joints.items() if name.rpartition(".")[0] not in replaced}
+    for names, pair in pairs.items():
+        for side, leg in zip("LR", pair[::-1] if facing > 0 else pair, strict=False):
+            found |= {f"{name}.{side}": at for name, at in zip(names, leg, strict=True)}
+    return found
+
+
+def _with_arms_apart(
+    joints: Mapping[str, complex], legs: Sequence[TrackedLeg]
+) -> dict[str, complex]:
+    """Return the joints of a body on two legs, with a limb that is no leg as an arm."""
+    found = dict(joints)
+    highest = max(leg.root.imag for leg in legs)
+    for side in "LR":
+        foot = joints.get(f"foot.{side}")
+        if foot is None or foot.imag <= highest:
+            continue
+        free = next((each for each in "LR" if f"hand.{each}" not in found), None)
+        if free is not None:
+            found |= {
+                f"{arm}.{free}": joints[f"{leg}.{side}"]
+                for arm, leg in zip(FRONT_LEG, LEG, strict=True)
+                if f"{leg}.{side}" in joints
+            }
+    return found
