@@ -124,10 +124,12 @@ def pressed_other_layer(project: Project, spot: PointerHit) -> int | None:
     if spot.handle is not None or spot.on_gizmo or spot.ctrl or spot.shift:
         return None
     active = project.selection.active
-    is_there = is_layer_at(project, active, to_scene(project, spot.place))
-    if is_there and not (spot.alt or spot.is_double):
+    if spot.layer in {None, active}:
         return None
-    return None if spot.layer in {None, active} else spot.layer
+    goes_there = spot.alt or spot.is_double or not spot.on_shape
+    if not goes_there and is_layer_at(project, active, to_scene(project, spot.place)):
+        return None
+    return spot.layer
 
 
 def _added_by_click(project: Project, spot: PointerHit) -> bool:

@@ -156,10 +156,14 @@ def tooltip_at(window, place, seconds=0.5):
 
 def test_a_tab_that_is_an_icon_has_its_name_in_a_tooltip(window):
     window.open(sample_images() / "bar.png")
-    assert tooltip_at(window, ImVec2(400, 200)) is None
+    # Half of so small a window has no room for six words.
+    window.resize((1024, 700), 2.0)
+    assert tooltip_at(window, ImVec2(200, 200)) is None
     window.show_tab("Measure")
+    window.frames(6)
     tab = imgui.internal.find_window_by_name("###Export").dc.dock_tab_item_rect
     assert tooltip_at(window, tab.get_center()) is not None
+    window.resize((1280, 800))
 
 
 def test_a_long_tooltip_wraps(window):
