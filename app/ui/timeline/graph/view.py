@@ -132,10 +132,11 @@ class GraphView:
     def fitted_to_points(self) -> dict[str, tuple[float, float]]:
         """Return the ranges that show the selected points, and of other units the present ones."""
         numbers: dict[str, list[float]] = {}
-        for point, index in self.points():
-            if point in self.chosen:
-                height = graph.height_of(self.bands.project, point.curve, index)
-                numbers.setdefault(point.curve.unit, []).append(height)
+        for curve in self.curves:
+            for index, key in enumerate(keys_in(self.document, curve.channel)):
+                if CurvePoint(curve, key.frame) in self.chosen:
+                    height = graph.height_of(self.bands.project, curve, index)
+                    numbers.setdefault(curve.unit, []).append(height)
         return self.ranges | {
             unit: _widened(min(own), max(own), unit) for unit, own in numbers.items()
         }
