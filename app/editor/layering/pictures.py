@@ -238,6 +238,11 @@ def set_drop_target(_: Session, project: Project, identity: int) -> None:
     project.layer_list.point_at(identity)
 
 
+def _only_moves(path: Path) -> bool:
+    """Return whether a dropped file can only be footage: a video, or a folder of pictures."""
+    return (is_video(path) or path.is_dir()) and is_footage([path])
+
+
 def drop_files(session: Session, paths: Sequence[Path]) -> None:
     """Open dropped files, and add sounds; ask whether pictures join the open scene."""
     sound_files = [path for path in paths if path.suffix.lower() in SUFFIXES]
@@ -247,7 +252,7 @@ def drop_files(session: Session, paths: Sequence[Path]) -> None:
         if not paths:
             return
     project = session.project
-    if project is not None and paths and all(map(is_video, paths)):
+    if project is not None and paths and all(map(_only_moves, paths)):
         for path in paths:
             add_footage(session, path)
         return

@@ -74,6 +74,9 @@ class FootageDecoder:
         while self._readers:
             self._readers.popitem()[1].close()
 
+    def __del__(self) -> None:
+        self.close()
+
     def _reader(self, footage: Footage) -> FootageReader:
         reader = self._readers.pop(footage, None)
         if reader is None:

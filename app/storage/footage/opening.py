@@ -56,7 +56,14 @@ def is_video(path: Path) -> bool:
 
 
 def is_footage(paths: Sequence[Path]) -> bool:
-    """Return whether pictures are one animated picture, or some of the same numbered pictures."""
+    """Return whether paths are a video, an animated picture, or some of the same numbered pictures.
+
+    A folder stands for the numbered pictures in it.
+    """
+    if len(paths) == 1 and paths[0].is_dir():
+        return any(len(find_numbered_pictures(each).paths) > 1 for each in paths[0].iterdir())
+    if all(map(is_video, paths)):
+        return len(paths) == 1
     if len(paths) > 1:
         return {*paths} <= {*find_numbered_pictures(paths[0]).paths}
     try:

@@ -263,3 +263,14 @@ def test_a_member_of_a_deform_group_shows_footage(window, project, moving):
     playback.scrub(window.session, 7)
     window.settle()
     assert shown(project, layer) == 7
+
+
+def test_dropped_folder_of_numbered_pictures_becomes_footage(window, project, tmp_path):
+    first = write_numbered(tmp_path / "walk", range(4))
+    window.act(drop_files, [first.parent])
+    window.settle()
+    assert project.document.layers[-1].footage.picture_count == 4
+    (tmp_path / "empty").mkdir()
+    window.act(drop_files, [tmp_path / "empty"])
+    window.settle()
+    assert any("is a folder" in text for text in notices(window))
