@@ -71,7 +71,7 @@ def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Ac
     elif chosen:
         count = len(chosen)
         heading(look, ngettext("{count} handle", "{count} handles", count).format(count=count))
-        small_text(look, _("Dragging one of them moves them all; arrows nudge them."))
+        small_text(look, _("Drag one of them to move them all. The box turns and scales them."))
         actions += _firmness(session, look, chosen)
         track = layer.track_of(chosen[0].id)
         if track is not None and set(track.handles) >= {handle.id for handle in chosen}:
