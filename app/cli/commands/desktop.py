@@ -19,7 +19,7 @@ from pathlib import Path
 from app.cli.console import print_line
 from app.errors import REINSTALL, LissomError
 from app.folders import home_folder
-from app.texts import N_, _
+from app.texts import LOCALE, N_, _, read_translations
 
 PROGRAM = "lissom"
 # Below the person's data folder.
@@ -47,9 +47,7 @@ ENTRY = """\
 [Desktop Entry]
 Type=Application
 Name=Lissom
-GenericName=2D Animation
-Comment=Pose a drawing with a few handles, and get in-betweens that never fold
-TryExec={program}
+{names}TryExec={program}
 Exec={quoted} %f
 Icon=lissom
 Terminal=false
@@ -64,12 +62,18 @@ TryExec={program}
 Exec={quoted} thumbnail %i --out %o --size %s
 MimeType=application/x-lissom;
 """
+# Texts of the entry, by their keys.
+NAMES = {
+    "GenericName": N_("2D animation"),
+    "Comment": N_("Pose a drawing with a few handles, and get in-betweens that never fold."),
+}
+PROJECT = N_("Lissom project")
 # A project is a zip file whose first member, not packed, identifies it.
 MIME_TYPE = """\
 <?xml version="1.0" encoding="UTF-8"?>
 <mime-info xmlns="http://www.freedesktop.org/standards/shared-mime-info">
   <mime-type type="application/x-lissom">
-    <comment>Lissom project</comment>
+    <comment>Lissom project</comment>{comments}
     <sub-class-of type="application/zip"/>
     <icon name="lissom"/>
     <magic priority="60">
@@ -154,11 +158,23 @@ def build_desktop_files(program: str) -> dict[str, bytes]:
     from app.storage import app_icon, decode_picture, draw_thumbnail
 
     icon = decode_picture(app_icon(), _("the icon of Lissom")).rgba
-    values = {"program": _escaped(program), "quoted": _quoted(program)}
+    languages = {path.stem: read_translations(path) for path in sorted(LOCALE.glob("*.po"))}
+    names = [f"{key}={text}\n" for key, text in NAMES.items()] + [
+        f"{key}[{code}]={known[text][0]}\n"
+        for key, text in NAMES.items()
+        for code, known in languages.items()
+        if text in known
+    ]
+    comments = [
+        f'\n    <comment xml:lang="{code}">{known[PROJECT][0]}</comment>'
+        for code, known in languages.items()
+        if PROJECT in known
+    ]
+    values = {"program": _escaped(program), "quoted": _quoted(program), "names": "".join(names)}
     return {
         ENTRY_AT: os.fsencode(ENTRY.format_map(values)),
         THUMBNAILER_AT: os.fsencode(THUMBNAILER.format_map(values)),
-        MIME_TYPE_AT: MIME_TYPE.encode(),
+        MIME_TYPE_AT: MIME_TYPE.replace("{comments}", "".join(comments)).encode(),
         **{place: draw_thumbnail(icon, side) for side, place in ICONS_AT.items()},
     }
 

@@ -64,6 +64,15 @@ def test_the_menu_has_lissom_and_opens_projects_with_it(home, capsys):
     assert shlex.split(said["Exec"]) == [str(PROGRAM), "%f"]
 
 
+def test_menu_and_kind_of_file_have_their_names_in_all_languages(home):
+    assert main(["desktop", "--install"]) == 0
+    said = (home / desktop.ENTRY_AT).read_text(encoding="utf-8")
+    assert "GenericName=2D animation\nComment=Pose" in said
+    assert "Comment[de]=Eine Zeichnung" in said
+    kind = (home / desktop.MIME_TYPE_AT).read_text(encoding="utf-8")
+    assert '<comment xml:lang="de">Lissom-Projekt</comment>' in kind
+
+
 def test_a_bundle_enters_itself(home, tmp_path, monkeypatch):
     program = str(tmp_path / "lissom" / "lissom")
     monkeypatch.setattr(sys, "frozen", True, raising=False)
@@ -158,7 +167,9 @@ def test_the_systems_own_program_understands_it_and_nothing_is_left(home, monkey
     other = home / "mime/packages/other.xml"
     if has_others:
         other.parent.mkdir(parents=True)
-        other.write_text(desktop.MIME_TYPE.replace("lissom", "other"), encoding="utf-8")
+        other.write_text(
+            desktop.MIME_TYPE.replace("lissom", "other").replace("{comments}", ""), encoding="utf-8"
+        )
         subprocess.run(["update-mime-database", home / "mime"], check=True)
     before = everything(home)
     main(["desktop", "--install"])
