@@ -29,7 +29,11 @@ from app.rigging.kinematics.springs import (
     simulate_spring as simulate_spring,
     turn_arm as turn_arm,
 )
-from app.rigging.motions.body import Body as Body, other_side as other_side
+from app.rigging.motions.body import (
+    Body as Body,
+    other_side as other_side,
+    without_side as without_side,
+)
 from app.rigging.motions.facing import guess_facing as guess_facing
 from app.rigging.motions.kinds import (
     KINDS as KINDS,

@@ -297,3 +297,17 @@ def test_a_change_meanwhile_refuses_it(window, ghost):
     arrive(window, ghost)
     assert ghost.document is changed
     assert "the drawing changed meanwhile" in window.session.notices.toasts[-1].text
+
+
+def test_near_leg_is_asked_for_beside_a_picture_of_each_leg(window, tmp_path):
+    window.program.take_dropped([paint(tmp_path, "walker", size=160)])
+    window.settle()
+    preset_setup.begin_motion_setup(window.session)
+    setup = window.session.tools.motion_setup
+    window.session.tools.select(replace(setup, unsure=("foot.R",)))
+    window.frames(3)
+    click(window, "//Animate/**/###foot.R 1")
+    answered = window.session.tools.motion_setup
+    assert not answered.unsure
+    assert answered.joints["foot.R"] == setup.joints["foot.L"]
+    assert answered.joints["hip.L"] == setup.joints["hip.R"]
