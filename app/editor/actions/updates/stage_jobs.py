@@ -134,13 +134,15 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
         for clip, runtime in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
             if is_wanted(clip, runtime.store):
                 yield SKETCHING, runtime, clip
-    if _is_unfinished(project):
+    if project.history.is_unfinished:
         return
     for runtime in project.runtimes.layers.values():
         if runtime.comparison is not None:
             comparison = runtime.comparison.clip(project.document)
             if is_wanted(comparison, runtime.store):
                 yield COMPARING, runtime, comparison
+    if _is_unfinished(project):
+        return
     for clip, runtime in clips:
         if runtime.store.mesh.domain is not clip.layer.domain and (
             runtime.fine is None or is_wanted(clip, runtime.fine)
