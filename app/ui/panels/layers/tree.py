@@ -57,6 +57,7 @@ from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import icon_button, name_popup
 
 DEEPEST_INDENT = 6  # deeper rows have the same indent
+BUTTONS, BUTTON = 7, 1.15  # number of buttons, and the width of one in heights of a line
 FEWEST, OTHERS = 6.5, 20.0  # smallest list in rows; em left for the settings below
 
 
@@ -96,11 +97,14 @@ def _bar(look: Look, project: Project) -> list[Action]:
         project.selected_layers,
     )
     index, last = layers.index(project.listed_layer), len(layers) - 1
+    width = BUTTON * imgui.get_frame_height()
+    free = imgui.get_content_region_avail().x - BUTTONS * width
+    gap = max(min(imgui.get_style().item_spacing.x, free / (BUTTONS - 1)), 0.0)
 
     def button(icon: str, name: str, hint: str, action: Action, reason: str | None = None) -> None:
         if icon_button(look, icon, name, hint, reason=reason):
             actions.append(action)
-        imgui.same_line()
+        imgui.same_line(0, gap)
 
     forward, back = (
         do(editing.edit_document, layer_commands.move_layer(active, index + by)) for by in (1, -1)
