@@ -81,6 +81,7 @@ class ToolState(Revised):
     is_space_used: bool = False  # whether Space was held to pan the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about the item under the pointer
+    hint_source: str = ""  # the panel that shows the hint, and takes it away again
     widget: int = 0  # number of the panel's widget in use; 0 for none
     is_widget_pressed: bool = False
     # Commands of a single use of a widget are one undo step.
@@ -163,8 +164,8 @@ class ToolState(Revised):
         """Note the handle under the pointer."""
         self.hovered = handle
 
-    def show_hint(self, hint: str) -> None:
-        self.hint = hint
+    def show_hint(self, hint: str, source: str = "") -> None:
+        self.hint, self.hint_source = hint, source
 
     def use_widget(self, widget: int, *, is_pressed: bool) -> None:
         """Note the widget in use, 0 for none, and whether the pointer presses it."""

@@ -65,8 +65,8 @@ def hover_handle(session: Session, handle: int | None) -> None:
     session.tools.hover(handle)
 
 
-def show_hint(session: Session, hint: str) -> None:
-    session.tools.show_hint(hint)
+def show_hint(session: Session, hint: str, source: str = "") -> None:
+    session.tools.show_hint(hint, source)
 
 
 def note_widget_in_use(session: Session, widget: int, *, is_pressed: bool) -> None:

@@ -35,6 +35,7 @@ from app.ui.timeline.ruler.edges import draw_range_edges
 from app.ui.timeline.ruler.markers import draw_markers
 from app.ui.timeline.ruler.ruler import draw_overview, draw_playhead, draw_ruler
 
+HINT_SOURCE = "timeline"
 ZOOM_STEP = 1.2  # per notch of the wheel
 SCROLL_STEP = 4.0  # em
 # Share of the distance beyond the edge by which the view scrolls in each frame.
@@ -79,11 +80,19 @@ def _draw_track(bands: TimelineLayout, frame: int) -> list[Action]:
     actions += draw_overview(bands, frame)
     actions += _go_on(bands, view)
     actions += _follow(bands, frame)
-    if imgui.is_window_hovered() or bands.project.timeline.gesture is not None:
-        actions.append(do(tool_pointer.show_hint, _hint(bands, view)))
+    actions += _update_hint(bands, view)
     imgui.set_cursor_screen_pos(bands.corner)
     imgui.dummy(ImVec2(0, 0))
     return actions
+
+
+def _update_hint(bands: TimelineLayout, view: GraphView | None) -> list[Action]:
+    """Set the hint for the place under the pointer, and take it away when the pointer leaves."""
+    is_over = imgui.is_window_hovered() or bands.project.timeline.gesture is not None
+    tools, hint = bands.session.tools, _hint(bands, view) if is_over else ""
+    if hint == tools.hint or not (is_over or tools.hint_source == HINT_SOURCE):
+        return []
+    return [do(tool_pointer.show_hint, hint, HINT_SOURCE)]
 
 
 def _navigate(bands: TimelineLayout, view: GraphView | None) -> list[Action]:

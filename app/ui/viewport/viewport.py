@@ -149,6 +149,8 @@ def _update_hint(
 ) -> list[Action]:
     """Set the hint for the place under the pointer. No row of layers is under it."""
     actions = [do(reset_tree_rows)] if is_over and screen.project.layer_list.lingering else []
+    if session.tools.hint_source and not is_over:
+        return actions
     hint = find_hint(session, screen, spot) if is_over else ""
     return actions if hint == session.tools.hint else [*actions, do(tool_pointer.show_hint, hint)]
 

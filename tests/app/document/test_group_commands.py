@@ -180,26 +180,21 @@ def test_a_hidden_group_hides_all_that_is_in_it():
     assert [is_visible(inner, layer, 3) for layer in inner.layers] == [True, True, False]
 
 
-def test_each_run_of_a_group_is_composited_by_itself():
+def test_each_run_of_a_group_is_composited_by_itself_unless_it_is_faded():
     document = grouped("a/one sky a/two a/b/three", "a", "a/b")
 
     def drawn(changed):
         return composite_layers(changed, {layer.id: layer.name for layer in changed.layers}, 0)
 
     assert drawn(document) == ("one", "sky", "two", "three")
+    # Faded, it is one, and what lies between its runs is not faded.
     faded = groups.set_group_opacity("a", 0.5)(document)
-    assert drawn(faded) == (
-        CompositeGroup(("one",), 0.5),
-        "sky",
-        CompositeGroup(("two", "three"), 0.5),
-    )
+    whole = CompositeGroup(("one", "sky", "two", "three"), 0.5, is_pass_through=True, kept=("sky",))
+    assert drawn(faded) == (whole,)
     inner = groups.set_group_blend("a/b", "multiply")(faded)
     # Faded as one, it still lets through what blends in it.
     shade = CompositeGroup(("three",), 1.0, "multiply")
-    assert drawn(inner)[2] == CompositeGroup(("two", shade), 0.5, is_pass_through=True)
-    assert drawn(groups.set_group_blend("a", "normal")(inner))[2] == CompositeGroup(
-        ("two", shade), 0.5
-    )
+    assert drawn(inner) == (replace(whole, parts=("one", "sky", "two", shade)),)
     # A group keeps what blends in it from what is behind only if it does not let it through.
     alone = groups.set_group_blend("a/b", "multiply")(document)
     assert drawn(alone)[3] == CompositeGroup(("three",), 1.0, "multiply")

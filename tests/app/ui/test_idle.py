@@ -76,6 +76,13 @@ def test_idle_window_makes_few_calls(window, layers):
     assert count_calls(window, frames=5) <= MOST_CALLS
 
 
+def test_window_is_idle_where_the_pointer_rests_on_the_timeline(window):
+    show_layers(window, 1)
+    window.run(lambda robot: robot.mouse_move("//Timeline/**/key 0"))
+    window.settle()
+    assert count_calls(window, frames=5) <= MOST_CALLS
+
+
 def test_window_is_idle_again_after_a_change(window):
     show_layers(window, 3)
     editing.edit_document(window.session, layer_commands.rename_layer(1, "arm"))

@@ -73,8 +73,8 @@ def composite_layers(
 ) -> tuple[Drawn | CompositeGroup[Drawn], ...]:
     """Return the compositing of drawn layers at a frame, from back to front.
 
-    `drawn` has the visible layers by id. Each run of a group is composited separately. Layers
-    clipped to an invisible base are invisible.
+    `drawn` has the visible layers by id. Each run of a group is composited separately; the
+    runs of a faded group are composited as one. Layers clipped to an invisible base are invisible.
     """
     layers = [
         each
