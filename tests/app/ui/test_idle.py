@@ -18,6 +18,7 @@ from app.document import (
 )
 from app.editor.actions import editing, playback
 from app.editor.actions.project_files import saving
+from app.editor.parts.tools import ToolState
 from app.editor.work.jobs import Jobs
 from app.editor.work.revised import Revised, revision_getter
 from app.ui.viewport.canvas import Canvas
@@ -76,11 +77,20 @@ def test_idle_window_makes_few_calls(window, layers):
     assert count_calls(window, frames=5) <= MOST_CALLS
 
 
-def test_window_is_idle_where_the_pointer_rests_on_the_timeline(window):
+def test_hint_is_set_once_while_the_pointer_rests_on_the_timeline(window, monkeypatch):
     show_layers(window, 1)
-    window.run(lambda robot: robot.mouse_move("//Timeline/**/key 0"))
-    window.settle()
-    assert count_calls(window, frames=5) <= MOST_CALLS
+    shown, show = [], ToolState.show_hint
+    monkeypatch.setattr(
+        ToolState, "show_hint", lambda own, *given: (shown.append(given), show(own, *given))
+    )
+
+    def rest(robot):
+        robot.mouse_move("//Timeline/**/key 0")
+        shown.clear()
+        robot.yield_(10)
+
+    window.run(rest)
+    assert len(shown) <= 2
 
 
 def test_window_is_idle_again_after_a_change(window):
