@@ -34,7 +34,8 @@ Places are pixels of the drawing from its lower left corner, x to the right and 
   biped-front, biped-side, four-legs
     hips, chest, neck, head, tail, and on each side, as in knee.L and knee.R,
     shoulder, elbow, hand, hip, knee, foot; the hands of four legs are its front feet, and in a
-    side view L and R are the two limbs of a pair, in any order
+    side view L and R are the two limbs of a pair, in any order; a long tail has tail.1 to tail.4
+    between hips and tail
   chain
     joint.1, joint.2 and so on to joint.16, from the end that leads, or is held, to the other end
   anything
