@@ -27,6 +27,7 @@ from engine.maps import Bounds, HarmonicMap, certify
 
 MOST_STEPS = 600  # per key
 AT_REST = 1e-3  # pixels: tolerance of coefficients of an undeformed drawing
+NO_PICTURE = np.zeros((0, 0, 4), dtype=np.uint8)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -88,8 +89,11 @@ def _joined(label: str, *commands: Command) -> Command:
     return Command(label, change)
 
 
-def step_resolver(resolver: KeyResolver, picture: Bytes) -> KeyResolver:
-    """Build the domain of the picture, or solve the next key; on the worker thread."""
+def step_resolver(resolver: KeyResolver, picture: Bytes = NO_PICTURE) -> KeyResolver:
+    """Build the domain of the picture, or solve the next key; on the worker thread.
+
+    Only a resolver that builds a domain needs the picture.
+    """
     if resolver.meshing is not None and resolver.new_layer is None:
         return _with_domain(resolver, picture, resolver.meshing)
     rig = resolver.rig or Rig.of(
@@ -101,6 +105,13 @@ def step_resolver(resolver: KeyResolver, picture: Bytes) -> KeyResolver:
     if not pose.certificate.is_certified:
         outside = (*outside, _in_words(resolver.before, index))
     return replace(resolver, rig=rig, poses=(*resolver.poses, pose), unsolved=outside)
+
+
+def solve_all(resolver: KeyResolver) -> KeyResolver:
+    """Solve all keys of a resolver that builds no domain."""
+    while not resolver.is_over:
+        resolver = step_resolver(resolver)
+    return resolver
 
 
 def _in_words(layer: Layer, index: int) -> str:

@@ -79,8 +79,9 @@ def attach_layer(
     frame = playback.current_frame(session, project)
 
     def find(joints: ParentTransforms) -> Command:
-        drawn = None if place is not None else attach_as_drawn(joints, child, parent, turns=turns)
-        held = drawn or joint_at_rest(joints, child, parent, frame, place=place, turns=turns)
+        if place is None:
+            return _attach_command(joints, child, parent, frame, turns=turns)
+        held = joint_at_rest(joints, child, parent, frame, place=place, turns=turns)
         return layer_commands.attach_layer(child, *held)
 
     joining = do(_attach, (child, parent), find)
@@ -107,20 +108,21 @@ def attach_layers(session: Session, project: Project, parent: int, *children: in
         return
 
     def find(joints: ParentTransforms) -> Command:
-        held = [
-            attach_as_drawn(joints, child, parent, turns=True)
-            or joint_at_rest(joints, child, parent, frame, turns=True)
-            for child in free
-        ]
-        attached = [
-            layer_commands.attach_layer(child, *joint)
-            for child, joint in zip(free, held, strict=True)
-        ]
+        attached = [_attach_command(joints, child, parent, frame, turns=True) for child in free]
         label = ngettext("Attach {count} layer", "Attach {count} layers", len(free))
         return combine_commands(label.format(count=len(free)), attached)
 
     joining = do(_attach, (*free, parent), find)
     pending_changes.run_when_idle(session, joining, _("Attach layers"))
+
+
+def _attach_command(
+    joints: ParentTransforms, child: int, parent: int, frame: int, *, turns: bool
+) -> Command:
+    """Return the command that joins layers as they are drawn, or else as they are at a frame."""
+    held = attach_as_drawn(joints, child, parent, turns=turns)
+    held = held or joint_at_rest(joints, child, parent, frame, turns=turns)
+    return layer_commands.attach_layer(child, *held)
 
 
 @with_project

@@ -36,9 +36,7 @@ def attach_as_drawn(
     if is_posed or own.tracks or own.attachments or own.keys_of(TRANSFORM):
         return None
     points = np.array([anchor_or_default(own), *_middles(own)])
-    common = contains(other.domain.outline, points)
-    for hole in other.domain.loops[1:]:
-        common &= ~contains(hole, points)
+    common = other.domain.contains(points)
     if not common.any():
         return None
     place = complex(points[_common_index(points, common)])

@@ -17,7 +17,7 @@ from app.document import (
 from app.errors import LissomError, join_names
 from app.solving.reload.alignment import PlacedPicture
 from app.solving.reload.replace_picture import distance_notices, start_picture_replacement
-from app.solving.resolve_keys import KeyResolver, step_resolver
+from app.solving.resolve_keys import KeyResolver, solve_all
 from app.storage import (
     ImportedLayer,
     Picture,
@@ -31,7 +31,6 @@ from engine.arrays import Bytes, readonly
 
 MARGIN = 2  # transparent pixels around the pictures of the members
 DARKENING = {"multiply", "darken", "color-burn", "linear-burn"}  # white is invisible
-NO_PICTURE = np.zeros((0, 0, 4), dtype=np.uint8)  # shapes are built before
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -87,8 +86,7 @@ def bend_as_one(
     if resolver.new_layer is None:
         raise ValueError("a replacement has a new layer")
     group = replace(resolver.new_layer, id=identity, name=title, cut_out=made.cut_out)
-    while not resolver.is_over:
-        resolver = step_resolver(resolver, NO_PICTURE)
+    resolver = solve_all(resolver)
     unsolved = [
         _("poses that exceed the limits: {poses}").format(poses=", ".join(resolver.unsolved))
     ]

@@ -14,11 +14,11 @@ from app.document import (
     deform_group_commands,
     layer_commands,
 )
-from app.solving.deform_group.bending import NO_PICTURE, cut_texture, flatten_members
+from app.solving.deform_group.bending import cut_texture, flatten_members
 from app.solving.reload.pictures import PlacedMask, move_cut_out
 from app.solving.reload.replace_picture import distance_notices, start_picture_replacement
 from app.solving.reload.shifting import shift_layer
-from app.solving.resolve_keys import KeyResolver, step_resolver
+from app.solving.resolve_keys import KeyResolver, solve_all
 from app.storage import (
     ImportedLayer,
     Picture,
@@ -61,7 +61,7 @@ def _redrawn(earlier: Layer, member: Layer, picture: Picture) -> Layer:
     )
     if made.still:
         return replace(make_still_layer(earlier), picture=member.picture)
-    layer = _solve_all(start_picture_replacement(earlier, made, member.corner))
+    layer = _solved_layer(start_picture_replacement(earlier, made, member.corner))
     return replace(layer, picture=member.picture)
 
 
@@ -135,7 +135,7 @@ def replace_member_picture(
         member if each.id == member.id else each for each in document.deform_members(group.id)
     ]
     rebuilt = rebuild_group(group, members, pictures, {**pictures, member.id: picture})
-    layer = rebuilt.layer if rebuilt.resolver is None else _solve_all(rebuilt.resolver)
+    layer = rebuilt.layer if rebuilt.resolver is None else _solved_layer(rebuilt.resolver)
     if layer is None:
         raise ValueError("a rebuilt group has a layer or is solved again")
     commands = (
@@ -146,10 +146,9 @@ def replace_member_picture(
     return combine_commands(_("Replace picture"), commands), known, rebuilt.notices
 
 
-def _solve_all(resolver: KeyResolver) -> Layer:
+def _solved_layer(resolver: KeyResolver) -> Layer:
     """Return the new layer of a resolver with all poses solved."""
-    while not resolver.is_over:
-        resolver = step_resolver(resolver, NO_PICTURE)
+    resolver = solve_all(resolver)
     if resolver.new_layer is None:
         raise ValueError("a replacement has a new layer")
     return resolver.new_layer.with_poses(resolver.poses)

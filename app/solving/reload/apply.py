@@ -3,8 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from app.document import Command, Document, Layer, PictureFile, layer_commands
 from app.errors import join_names
 from app.solving.deform_group.rebuilding import RebuiltGroup, rebuild_group
@@ -34,8 +32,6 @@ from app.storage import (
     run_parallel,
 )
 from app.texts import _, message_of
-
-NO_PICTURE = np.zeros((0, 0, 4), dtype=np.uint8)  # shapes are built before
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -168,7 +164,7 @@ def _rebuilt_groups(plan: ReloadPlan, made: Sequence["_Made"]) -> dict[int, Rebu
 def step_reload(reloading: Reloading) -> Reloading:
     """Solve the next key of each layer with another shape."""
     resolvers = run_parallel(
-        lambda each: each if each.is_over else step_resolver(each, NO_PICTURE),
+        lambda each: each if each.is_over else step_resolver(each),
         reloading.resolvers,
         (),
     )
