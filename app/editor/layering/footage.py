@@ -222,27 +222,30 @@ def _why_nothing_collects(project: Project) -> str | None:
     return None if project.file.path is not None else _("Save the project first.")
 
 
-def watch_files(session: Session) -> None:
-    """Offer to reload drawings and footage whose files have changed; called every few seconds."""
-    watch_drawings(session)
-    _watch_footage(session)
-
-
 @with_project
-def _watch_footage(session: Session, project: Project) -> None:
-    for layer in project.document.layers:
-        footage = layer.footage
-        if footage is None:
-            continue
-        has_changed = project.footage.note_times(footage, _times(footage))
-        if has_changed and not _is_missing(footage):
-            reload: Action = do(reload_footage, layer.id)
-            session.notices.show(
-                _("{name} has changed.").format(name=display_name(footage.name)),
-                topic=f"changed {footage.name}",
-                label=_("Reload"),
-                action=reload,
-            )
+def watch_files(session: Session, project: Project) -> None:
+    """Offer to reload drawings and footage whose files have changed; called every few seconds.
+
+    A window that rests without such files makes as few calls as possible.
+    """
+    document = project.document
+    if document.drawings:
+        watch_drawings(session)
+    for layer in document.layers:
+        if layer.footage is not None:
+            _watch_footage(session, project, layer.id, layer.footage)
+
+
+def _watch_footage(session: Session, project: Project, identity: int, footage: Footage) -> None:
+    has_changed = project.footage.note_times(footage, _times(footage))
+    if has_changed and not _is_missing(footage):
+        reload: Action = do(reload_footage, identity)
+        session.notices.show(
+            _("{name} has changed.").format(name=display_name(footage.name)),
+            topic=f"changed {footage.name}",
+            label=_("Reload"),
+            action=reload,
+        )
 
 
 def _times(footage: Footage) -> tuple[int, ...]:
