@@ -1,6 +1,7 @@
 """Drawings of a command: cut out, opened, and saved as a project."""
 
 import argparse
+from collections.abc import Collection
 from pathlib import Path
 
 from app.cli.console import print_notices
@@ -42,8 +43,13 @@ def parse_cut_out(arguments: argparse.Namespace) -> CutOut:
     )
 
 
-def open_drawing(arguments: argparse.Namespace, *, merges_layers: bool) -> OpenedScene:
-    """Open the drawing as a scene, and print notices."""
+def open_drawing(
+    arguments: argparse.Namespace, *, merges_layers: bool, members: Collection[str] = ()
+) -> OpenedScene:
+    """Open the drawing as a scene, and print notices.
+
+    `members` are names of layers that will bend as one.
+    """
     meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
     cut_out = parse_cut_out(arguments)
     if not is_layered(arguments.picture):
@@ -51,7 +57,7 @@ def open_drawing(arguments: argparse.Namespace, *, merges_layers: bool) -> Opene
     elif merges_layers:
         opened = open_merged(arguments.picture, meshing, cut_out)
     else:
-        opened = open_layered(arguments.picture, meshing, cut_out)
+        opened = open_layered(arguments.picture, meshing, cut_out, members)
     print_notices((*opened.notices, *opened.document.import_log.lines))
     return opened
 

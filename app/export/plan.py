@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from app.document import Document
+from app.errors import report_progress
 from app.export.destination import FrameNames, check_room, find_stale_frames
 from app.export.framing import check_largest_size, frame_view, list_added_pixels
 from app.export.request import ExportRequest, export_times, exported_frames
@@ -120,7 +121,7 @@ def plan_export(
     bent = dict.fromkeys(map(document.deform_layer, document.exported_layers))
     rest = np.concatenate([layer.domain.mesh.vertices for layer in bent])
     if settings.framing == "fit" and not document.camera and extent is None:
-        extent = measure_extent(document, evaluator, frames)
+        extent = measure_extent(document, evaluator, frames, report_progress)
     plan = ExportPlan(
         out=request.out,
         format=settings.format,

@@ -281,20 +281,20 @@ def run(arguments: argparse.Namespace) -> int:
     read = arguments.picture, arguments.script, arguments.mask
     check_writable(arguments.out, sources=filter(None, read))
     script = load_pose_script(arguments.script)
-    opened = open_drawing(arguments, merges_layers=arguments.one_picture)
+    members = {name for part in script.layers for name in part.members}
+    opened = open_drawing(arguments, merges_layers=arguments.one_picture, members=members)
     with StatusLine() as status:
         document, notices = pose_document(opened.document, script, status.show)
     print_notices(notices)
     save_drawing(arguments.out, opened, document)
     posed = [layer for layer in document.layers if not layer.still]
-    layers = len(document.layers)
     keys = sum(len(layer.keys) for layer in posed)
     handles = sum(len(layer.handles) for layer in posed)
     counts = [
         ngettext("{count} key", "{count} keys", keys).format(count=keys),
         ngettext("{count} handle", "{count} handles", handles).format(count=handles),
     ]
-    if layers > 1:
+    if (layers := len(document.layers)) > 1:
         counts.insert(0, ngettext("{count} layer", "{count} layers", layers).format(count=layers))
     print_line(_("{path}: {counts}").format(path=arguments.out, counts=", ".join(counts)))
     return 0

@@ -1,5 +1,7 @@
 """Bounding boxes of animations."""
 
+from collections.abc import Callable
+from itertools import count
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +15,7 @@ from app.document import (
 )
 from app.errors import LissomError
 from app.motion.evaluator import Evaluator
-from app.motion.extents.long_extent import farthest_reach
+from app.motion.extents.long_extent import MOST_MEASURED, farthest_reach
 from app.texts import _
 from engine.arrays import Complexes, Floats
 
@@ -48,18 +50,23 @@ def extent_key(document: Document) -> tuple[object, ...]:
 
 
 def measure_extent(
-    document: Document, evaluator: Evaluator, frames: FrameRange | None = None
+    document: Document,
+    evaluator: Evaluator,
+    frames: FrameRange | None = None,
+    progress: Callable[[float], None] = lambda _share: None,
 ) -> BoundingBox:
     """Return the bounding box of all exported layers in some frames.
 
-    By default these are the frames of an export. Long ranges are sampled. Raises a `LissomError` if
-    a position is not finite.
+    By default these are the frames of an export. Long ranges are sampled. `progress` takes the
+    share of the measured frames. Raises a `LissomError` if a position is not finite.
     """
     if not document.exported_layers:
         return BoundingBox(0j, complex(*document.canvas))
     frames = frames_for_fit(document, frames or export_frame_range(document))
+    most, measured = min(frames.last - frames.first + 1, MOST_MEASURED), count()
 
     def reaches(frame: int) -> Floats:
+        progress(min(next(measured) / most, 1.0))
         bent = map(document.deform_layer, document.exported_layers)
         ids = dict.fromkeys(layer.id for layer in bent)
         layers = evaluator.evaluate(document, frame, only=ids, keep=True).layers

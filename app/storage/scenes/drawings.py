@@ -1,6 +1,6 @@
 """New scenes from layered drawings, or from several pictures."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
@@ -106,14 +106,21 @@ def open_picture(path: Path, meshing: Meshing | None, cut_out: CutOut = CutOut()
     return build_scene(single_layer_drawing(path, data, picture), meshing, cut_out)
 
 
-def open_layered(path: Path, meshing: Meshing | None, cut_out: CutOut = CutOut()) -> OpenedScene:
+def open_layered(
+    path: Path,
+    meshing: Meshing | None,
+    cut_out: CutOut = CutOut(),
+    members: Collection[str] = (),
+) -> OpenedScene:
     """Read a layered drawing, and make a layer of each of its layers.
+
+    `members` are names of layers that will bend as one: the log omits their own shapes.
 
     A layer that is fully opaque, or without a shape, becomes a still picture. If this is true of
     all layers, each opens as a picture file does, with the `cut_out`. All layers together have as
     many triangles as one picture.
     """
-    return _scene(read_layered(path), meshing, cut_out, is_cut_out=True)
+    return _scene(read_layered(path), meshing, cut_out, is_cut_out=True, members=members)
 
 
 def open_merged(path: Path, meshing: Meshing | None, cut_out: CutOut = CutOut()) -> OpenedScene:
@@ -185,7 +192,12 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing | None) -> OpenedScene
 
 
 def _scene(
-    drawing: LayeredPicture, meshing: Meshing | None, cut_out: CutOut, *, is_cut_out: bool
+    drawing: LayeredPicture,
+    meshing: Meshing | None,
+    cut_out: CutOut,
+    *,
+    is_cut_out: bool,
+    members: Collection[str] = (),
 ) -> OpenedScene:
     count, meshing = len(drawing.layers), meshing or Meshing.of_size(drawing.size)
     share = max(min(FEWEST_TRIANGLES, MOST_TOGETHER // count), meshing.triangles // count)
@@ -214,7 +226,7 @@ def _scene(
     ]
     collector = NoticeCollector()
     for layer, notices in made:
-        for notice in notices:
+        for notice in notices if layer.name not in members else ():
             collector.add_note(layer.name, notice)
     document = document_of_drawing(drawing, layers)
     document = replace(document, import_log=document.import_log + collector.import_log)

@@ -103,15 +103,21 @@ def find_state(session: Session) -> StatusState | None:
 def _running(session: Session, waiting: str, slow: Sequence[JobKind]) -> StatusState:
     """Return the state of running jobs. Jobs with progress and endless ones can be cancelled."""
     name = waiting or (_("Updating the animation") if slow[0] in UPDATES else slow[0].label)
-    share = session.jobs.share_of(slow[0]) if slow else None
-    text = _("{job}…") if share is None else _("{job}… {share:.0%}")
-    state = StatusState(text.format(job=name, share=share), is_running=True)
+    text = _name_job(session, name, slow[0]) if slow else _("{job}…").format(job=name)
+    state = StatusState(text, is_running=True)
     measured = tuple(kind for kind in slow if session.jobs.share_of(kind) is not None)
     endless = session.jobs.running_for(ENDLESS) or measured
     if not endless:
         return state
     cancel, hint = do(stage_jobs.give_up, endless[0]), _("Cancel: {job}").format(job=name)
     return state._replace(remedy=cancel, label=_("Cancel"), hint=hint)
+
+
+def _name_job(session: Session, name: str, kind: JobKind) -> str:
+    """Return a name with the finished part of a job of this kind, if it is known."""
+    share = session.jobs.share_of(kind)
+    text = _("{job}…") if share is None else _("{job}… {share:.0%}")
+    return text.format(job=name, share=share)
 
 
 def _describe_moving(project: Project) -> str:
@@ -199,10 +205,13 @@ def describe_motion_limit(session: Session) -> str:
 
 
 def _export(session: Session) -> str:
-    """Return the progress of the running export in words; else ""."""
-    run = session.export.run
-    if run is None:
+    """Return the progress of the export under way in words, or what it waits for; else ""."""
+    run, project = session.export.run, session.project
+    if project is None or not exporting.is_export_under_way(session):
         return ""
+    if run is None:
+        waiting = pending_changes.deferred_label(project)
+        return _name_job(session, waiting or exporting.PREPARING.label, exporting.PREPARING)
     if run.for_clipboard:
         return _("Copying the picture…")
     total, name = len(run.plan.times), display_name(run.plan.out.name)

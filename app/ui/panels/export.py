@@ -5,7 +5,7 @@ from dataclasses import replace
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import ExportSettings, scene_commands
-from app.editor import Action, Project, Session, do
+from app.editor import Action, Project, Session, do, pending_changes
 from app.editor.actions import editing
 from app.editor.actions.project_files import export_settings, exporting
 from app.editor.actions.timing import keys
@@ -18,7 +18,7 @@ from app.texts import _, message_of
 from app.ui.panels.export_settings.format_options import draw_format_options
 from app.ui.panels.export_settings.frames import draw_frame_settings
 from app.ui.panels.export_settings.preview import draw_export_preview
-from app.ui.panels.export_settings.sizes import LARGEST, draw_size_fields
+from app.ui.panels.export_settings.sizes import LARGEST, draw_side, side_width
 from app.ui.panels.export_settings.sound import draw_sound_option
 from app.ui.shortcuts.keys import shown_keys
 from app.ui.style.theme import Look
@@ -39,6 +39,7 @@ from app.ui.style.widgets import (
 BACKGROUNDS = (("transparent", _("Transparent")), ("colour", _("Colour")))
 FRAMINGS = (("fit", _("All motion")), ("canvas", _("Canvas")))
 PLAYS = (("once", _("Once")), ("for ever", _("For ever")))
+CROSS = "×"
 WHITE, USES = "#ffffff", 26.0  # the latter in em: width of the list of formats
 
 
@@ -189,14 +190,15 @@ def _size(
     actions: list[Action] = []
     label(look, _("Size"))
     gap, room = imgui.get_style().item_inner_spacing.x, 1.15 * imgui.get_frame_height()
-    keeps = session.export.is_aspect_locked
-
-    def draw_lock() -> None:
-        icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
-        if icon_button(look, icon, "keep ratio", _("Keep proportions"), active=keeps):
-            actions.append(do(export_settings.set_aspect_locked, not keeps))
-
-    entered = draw_size_fields("", view.size, room + gap, (draw_lock, room))
+    keeps, each = session.export.is_aspect_locked, side_width(room, room + gap)
+    width, height = view.size
+    wide, by_width = draw_side("width", width, each)
+    imgui.same_line(0, gap)
+    icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
+    if icon_button(look, icon, "keep ratio", _("Keep proportions"), active=keeps):
+        actions.append(do(export_settings.set_aspect_locked, not keeps))
+    imgui.same_line(0, gap)
+    high, by_height = draw_side("height", height, each)
     imgui.same_line(0, gap)
     if icon_button(
         look,
@@ -206,10 +208,9 @@ def _size(
         reason=_("It already has the size of the drawing.") if settings.size is None else None,
     ):
         return replace(settings, size=None), actions
-    if entered is None or entered.size == view.size:
+    if not (by_width or by_height) or (wide, high) == view.size:
         return settings, actions
-    (wide, high), (width, height) = entered.size, view.size
-    if keeps and entered.by_width:
+    if keeps and by_width:
         high = min(max(round(wide * height / width), 1), LARGEST)
     elif keeps:
         wide = min(max(round(high * width / height), 1), LARGEST)
@@ -220,8 +221,14 @@ def _canvas(look: Look, project: Project) -> list[Action]:
     """Draw the size of the canvas, whose origin is fixed, and a reset to the picture's size."""
     document = project.document
     label(look, _("Canvas"))
-    gap = imgui.get_style().item_inner_spacing.x
-    entered = draw_size_fields("canvas ", document.canvas, 1.15 * imgui.get_frame_height() + gap)
+    gap, (width, height) = imgui.get_style().item_inner_spacing.x, document.canvas
+    room = 1.15 * imgui.get_frame_height() + gap
+    each = side_width(imgui.calc_text_size(CROSS).x, room)
+    wide, by_width = draw_side("width", width, each, name="canvas ")
+    imgui.same_line(0, gap)
+    imgui.text_disabled(CROSS)
+    imgui.same_line(0, gap)
+    high, by_height = draw_side("height", height, each, name="canvas ")
     imgui.same_line(0, gap)
     hint = _("Reset to the size of the backmost picture")
     is_own = document.canvas != document.layers[0].picture.size
@@ -230,9 +237,19 @@ def _canvas(look: Look, project: Project) -> list[Action]:
         return [
             do(editing.edit_document, scene_commands.set_canvas(document.layers[0].picture.size))
         ]
-    if entered is None or entered.size == document.canvas:
+    if not (by_width or by_height) or (wide, high) == document.canvas:
         return []
-    return [do(editing.edit_document, scene_commands.set_canvas(entered.size))]
+    return [do(editing.edit_document, scene_commands.set_canvas((wide, high)))]
+
+
+def _preparing(session: Session, project: Project) -> tuple[float, str]:
+    """Return how far an export is prepared, or what it waits for, with a share for the bar."""
+    share = session.jobs.share_of(exporting.PREPARING)
+    waiting = pending_changes.pending_label(project)
+    if share is not None:
+        return share, _("Preparing… {share:.0%}").format(share=share)
+    # A negative share animates the bar without a value.
+    return -0.5 * imgui.get_time(), _("{job}…").format(job=waiting) if waiting else _("Preparing…")
 
 
 def _output(session: Session, look: Look, project: Project) -> list[Action]:
@@ -253,8 +270,7 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
         actions.append(do(export_settings.ask_export_destination))
     run = session.export.run
     if exporting.is_export_under_way(session):
-        # A negative share animates the bar without a value.
-        share, text = -0.5 * imgui.get_time(), _("Preparing…")
+        share, text = _preparing(session, project)
         if run is not None:
             total = len(run.plan.times)
             share = run.done / total

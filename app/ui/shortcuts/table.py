@@ -136,6 +136,7 @@ ENDED_BY_ESC = (
     editing.cancel_change,
     move_tool.return_to_posing,
     apply_motion.cancel_motion_job,
+    exporting.cancel_preparing,
     recording.discard_recording,
     tutorials.end_tutorial,
     editing.deselect_all,

@@ -10,10 +10,7 @@ from app.document import WEIGHT_PRESETS, Handle, handle_commands, value_at
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import handle_editing
-from app.editor.actions.posing.handles import (
-    remove_handles,
-    suggest_handles,
-)
+from app.editor.actions.posing.handles import remove_handles, suggest_handles
 from app.editor.actions.posing.limb_editing import flip_selected_joints
 from app.editor.actions.posing.pose_drag import free_rotation, pin_selected_handles
 from app.editor.actions.timing import keys, tracks
@@ -32,10 +29,7 @@ from app.ui.style.theme import Look, pixel_density
 from app.ui.style.widgets import is_hovered_or_held, is_pressed, menu_entry
 from app.ui.viewport.backdrop import draw_camera_frame
 from app.ui.viewport.interaction.drag import follow_pointer
-from app.ui.viewport.interaction.gizmos import (
-    add_mirror_axis_gizmo,
-    draw_mirror_axis,
-)
+from app.ui.viewport.interaction.gizmos import add_mirror_axis_gizmo, draw_mirror_axis
 from app.ui.viewport.interaction.hints import draw_badges, find_hint
 from app.ui.viewport.interaction.recording import add_track_key_gizmos, draw_recording_bar
 from app.ui.viewport.interaction.shapes import draw_shapes
@@ -50,6 +44,7 @@ from app.ui.viewport.split_view import (
 
 ZOOM_STEP = 1.15  # per notch of the wheel
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
+LEFT = imgui.MouseButton_.left
 LEFT_OR_RIGHT = imgui.ButtonFlags_.mouse_button_left | imgui.ButtonFlags_.mouse_button_right
 ANY_BUTTON = LEFT_OR_RIGHT | imgui.ButtonFlags_.mouse_button_middle
 # The menu of the canvas. A separator splits two groups.
@@ -150,6 +145,9 @@ def _update_hint(
     """Set the hint for the place under the pointer. No row of layers is under it."""
     actions = [do(reset_tree_rows)] if is_over and screen.project.layer_list.lingering else []
     if session.tools.hint_source and not is_over:
+        return actions
+    if session.tools.active_tool is not None and not imgui.is_mouse_dragging(LEFT):
+        # A click is no drag.
         return actions
     hint = find_hint(session, screen, spot) if is_over else ""
     return actions if hint == session.tools.hint else [*actions, do(tool_pointer.show_hint, hint)]

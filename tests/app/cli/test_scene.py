@@ -718,3 +718,24 @@ def test_order_is_refused_beside_a_layer_that_is_not_there(drawing):
     body = {**STAGED["layers"][0], "order": [[4, {"behind": "hat"}]]}
     notice = refused(drawing, {**STAGED, "layers": [body]})
     assert "layer 'body': Draw order: there is no layer 'hat'" in notice
+
+
+def test_nothing_is_said_of_the_shapes_of_layers_that_bend_as_one(tmp_path, capsys):
+    """Their group has a mesh of its own; the gap in one of them is filled by the other one."""
+    dots = painted("ellipse", (20, 60, 80, 120), (0, 0, 0, 255))
+    ImageDraw.Draw(dots).ellipse((150, 60, 210, 120), fill=(0, 0, 0, 255))
+    pictures = [dots, painted("rectangle", (15, 50, 220, 130), (250, 250, 0, 255))]
+    stack = "".join(
+        f'<layer name="{name}" src="data/{index}.png"/>'
+        for index, name in enumerate(("dots", "bar"))
+    )
+    drawing = tmp_path / "bar.ora"
+    drawing.write_bytes(openraster((WIDTH, HEIGHT), stack, pictures))
+    keys = {"handles": {"end": [200, 110]}, "keys": [{"frame": 0}]}
+    for layers, count in (({"layer": "dots"}, 1), ({"layers": ["dots", "bar"]}, 0)):
+        script = tmp_path / "bar.json"
+        script.write_text(json.dumps({"schema": 1, "layers": [{**layers, **keys}]}))
+        out = tmp_path / "bar.lissom"
+        assert main(["pose", str(drawing), str(script), "--out", str(out), *FEW]) == 0
+        assert capsys.readouterr().err.count("2 parts joined by invisible bridges") == count
+        assert len(load_project(out).import_log.notes) == count

@@ -1,5 +1,6 @@
 """Exports as a person makes them: in one format after another, from any tab."""
 
+import threading
 from dataclasses import replace
 
 import pytest
@@ -11,8 +12,11 @@ from app.editor.actions import editing
 from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.actions.timing import keys
 from app.editor.parts.dialogs import FileDialog
+from app.editor.work.pending_change import PendingChange
+from app.errors import report_progress
 from app.export_formats import EXPORT_FORMATS
 from app.storage import load_project
+from app.ui.bars.status import find_state
 
 CTRL_E = int(imgui.Key.mod_ctrl) | int(imgui.Key.e)
 SIZE = (60, 24)
@@ -181,6 +185,53 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     window.frames(2)
     assert not any("walk frames" in text for text in written)
     assert loose.exports.by_format == {"png": tmp_path / "walk frames"}
+
+
+def test_an_export_that_is_prepared_tells_how_far_it_is_and_esc_cancels_it(
+    window, loose, tmp_path, monkeypatch
+):
+    session, bars, goes_on = window.session, [], threading.Event()
+
+    def plan_slowly(*_rest):
+        while not goes_on.wait(0.01):
+            report_progress(0.25)
+
+    def see(share, size, text):
+        bars.append((share, text))
+        progress_bar(share, size, text)
+
+    progress_bar = imgui.progress_bar
+    monkeypatch.setattr(exporting, "plan_export", plan_slowly)
+    monkeypatch.setattr(imgui, "progress_bar", see)
+    window.show_tab("Export")
+    editing.select_handles(session, frozenset({0}))
+    try:
+        window.act(exporting.start_export, tmp_path / "walk frames")
+        while session.jobs.share_of(exporting.PREPARING) is None:
+            window.frames()
+        window.frames(30)
+        assert bars[-1] == (0.25, "Preparing… 25%")
+        state = find_state(session)
+        assert (state.text, state.label) == ("Preparing the export… 25%", "Cancel")
+        window.run(lambda robot: robot.key_press(int(imgui.Key.escape)))
+    finally:
+        goes_on.set()
+    window.settle()
+    assert not exporting.is_export_under_way(session)
+    assert [toast.text for toast in session.notices.toasts] == [exporting.CANCELLED_UNWRITTEN]
+    assert loose.selection.handles == {0}
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_export_tells_what_it_waits_for(window, loose, tmp_path):
+    change = PendingChange(label="Solving keys again")
+    loose.pending.add(change)
+    window.act(exporting.start_export, tmp_path / "walk frames")
+    assert find_state(window.session).text == "Solving keys again, then: Export…"
+    find_state(window.session).remedy.apply(window.session)
+    loose.pending.remove(change)
+    window.settle()
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_file_plays_once_or_for_ever_as_it_is_chosen_beside_its_frames(window, loose, choose):

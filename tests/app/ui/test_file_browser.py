@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from imgui_bundle import hello_imgui, imgui
 from PIL import Image
 
 from app.editor.action import do
@@ -116,6 +117,43 @@ def test_a_double_click_enters_a_folder_and_opens_a_file(window, show, folder, c
     assert chosen == [folder / "drawings" / "cow.png"]
     assert window.session.dialogs.current is None
     assert window.session.settings.usual_folder == folder / "drawings"
+
+
+@pytest.mark.parametrize("is_split", [False, True], ids=["in one frame", "in two frames"])
+def test_a_double_click_counts_however_slow_the_frames_are(
+    window, show, folder, chosen, monkeypatch, is_split
+):
+    """Between frames of half a second, both come at once, or one a frame later."""
+    show()
+    boxes = []
+    window.run(
+        lambda robot: boxes.append(robot.item_info(f"//###dialog/{entry('bat.png')}").rect_full)
+    )
+    io, calls = imgui.get_io(), hello_imgui.get_runner_params().callbacks
+    place = boxes[0].get_center()
+    io.add_mouse_pos_event(place.x, place.y)
+    window.frames(2)
+    begin = calls.pre_new_frame
+
+    def begin_slowly():
+        io.delta_time = 0.5
+        begin()
+
+    monkeypatch.setattr(calls, "pre_new_frame", begin_slowly)
+    for _ in range(2):
+        io.add_mouse_button_event(0, True)  # noqa: FBT003 - ImGui's own
+        io.add_mouse_button_event(0, False)  # noqa: FBT003
+        window.frames(is_split)
+    window.frames(6)
+    assert chosen == [folder / "bat.png"]
+
+
+def test_two_slow_clicks_are_no_double_click(window, show, chosen):
+    show()
+    for _ in range(2):
+        click(window, entry("bat.png"))
+        window.frames(30)
+    assert chosen == []
 
 
 def test_a_click_marks_a_file_and_the_button_opens_it(window, show, folder, chosen):

@@ -47,6 +47,23 @@ def test_forty_and_enter_move_a_handle_by_forty_pixels(window, bar):
     assert bar.document is before
 
 
+def test_the_hint_of_drags_is_not_shown_for_a_click(window, bar):
+    start, hints = bar.layer.handles[0].position, []
+
+    def play(robot):
+        begin(robot, window, start)
+        for _ in range(4):
+            hints.append(window.session.tools.hint)
+            robot.yield_(1)
+        robot.mouse_up(0)
+        for _ in range(4):
+            hints.append(window.session.tools.hint)
+            robot.yield_(1)
+
+    window.run(play)
+    assert not [hint for hint in hints if "type a number" in hint.lower()]
+
+
 def test_x_and_y_keep_a_drag_to_an_axis(window, bar):
     start = bar.layer.handles[0].position
 

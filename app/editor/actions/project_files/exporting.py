@@ -11,7 +11,7 @@ from app.document import ExportSettings, FrameRange
 from app.editor import pending_changes
 from app.editor.action import Action, do
 from app.editor.actions import playback
-from app.editor.actions.action_spec import named_action
+from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.posing.pose_commit import key_pose_command
 from app.editor.error_reports import as_sentence, report_failure, run_job
 from app.editor.parts.export_state import ExportRun
@@ -177,6 +177,19 @@ def _prepare(
         return ExportRun(document=exported, pictures=pictures, evaluator=evaluator, plan=plan)
 
     run_job(session, PREPARING, work, begun)
+
+
+@named_action(
+    _("Cancel export"),
+    "Escape",
+    why_disabled=unless(
+        lambda session, _: is_export_under_way(session) and session.export.run is None,
+        _("No export is being prepared."),
+    ),
+)
+def cancel_preparing(session: Session) -> None:
+    """Cancel an export of which no frame is drawn yet."""
+    cancel_export(session)
 
 
 def cancel_export(session: Session) -> None:
