@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import Floats
-from engine.deform.correction.barrier import WIDTH, LimitBarrier, extremes
+from engine.deform.correction.barrier import LAST, WIDTH, LimitBarrier, extremes
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.point_targets import PointTargets
@@ -44,6 +44,9 @@ def solve_within(
     samples: BaseFrame,
     targets: PointTargets,
     limits: Floats,
+    *,
+    width: float = WIDTH,
+    start: PointSolution | None = None,
 ) -> PointSolution:
     """Find the correction of one frame that keeps limits at the samples, from zero.
 
@@ -56,14 +59,18 @@ def solve_within(
         The frame at the nodes of the corrector's paths, and at the samples of the boundary.
     limits : float64, shape (3,)
         Of ln σ_a, −ln σ_b and k.
+    width : float
+        Distance from the limits at which the barrier begins.
+    start : PointSolution, optional
+        Of a similar frame, for the search without limits.
     """
-    found = solve_correction(corrector, nodes, targets, throw=False)
-    if (extremes(corrector, samples, found.x) <= limits - WIDTH).all():
+    found = solve_correction(corrector, nodes, targets, start, throw=False)
+    if (extremes(corrector, samples, found.x) <= limits - width).all():
         return found
     # At zero, points that need no correction are at their targets, and stay there.
-    start = replace(found, x=0.0 * found.x, shift=0j)
-    walls = LimitBarrier(corrector, samples, limits)
-    near = solve_correction(corrector, nodes, targets, start, walls, throw=False)
+    nothing = replace(found, x=0.0 * found.x, shift=0j)
+    walls = LimitBarrier(corrector, samples, limits, last=LAST * (width / WIDTH) ** 2)
+    near = solve_correction(corrector, nodes, targets, nothing, walls, throw=False)
     return replace(near, steps=found.steps + near.steps, is_limited=True)
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -10,8 +11,8 @@ from engine.arrays import Complexes, Floats, freeze
 from engine.deform.correction.barrier import extremes
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame
-from engine.deform.correction.limits import frame_limits, max_feasible_share
-from engine.deform.correction.solver import PointSolution, solve_correction
+from engine.deform.correction.limits import frame_limits, max_feasible_share, solve_within
+from engine.deform.correction.solver import PointSolution
 from engine.interpolation.added.pins.targets import SegmentPins
 from engine.interpolation.series.chebyshev import (
     PiecewiseSeries,
@@ -26,14 +27,15 @@ from engine.maps import Bounds
 TOLERANCE, LEFT_OUT = 5e-6, 1e-6
 SHORTEST = 2.0**-3  # pieces of time are not halved below this
 DEGREES = (8, 16)
-# If so many solves end early, the targets are far out of reach. One series of this degree will do:
-# a finer one would only follow where each solve has ended.
-OUT_OF_REACH, ROUGHLY = 3, 16
-CHECKED = 64  # times at which a segment that reaches its limits is checked again
+# Distance of solved corrections from the limits, for what the series add between the solved times;
+# how far keyframes at a limit are exceeded; and the distance at which the barrier begins.
+INNER, BEYOND_KEYS, WALL = 0.01, 0.001, 0.001
+# Times at which a segment that reaches its limits is checked, and again if it breaks them.
+CHECKED, CHECKED_AGAIN = 64, 256
 
 
-class _OutOfReachError(Exception):
-    """Raised when too many solves of a segment have ended early."""
+class _AtLimitsError(Exception):
+    """Raised when the first correction of a segment comes near the limits, or ends early."""
 
 
 class CorrectionBase(NamedTuple):
@@ -97,47 +99,51 @@ def fit_pin_corrections(
     """Find the corrections of a segment.
 
     `base_at` returns the base at a time in [0, 1]. The samples keep `bounds`, widened by the
-    extremes of the keyframes.
+    extremes of the keyframes. Each solved correction keeps them by itself, so that pinned points
+    stay where limits act elsewhere.
     """
     known, size = corrector.variables, corrector.boundary.size
     solved: dict[float, PointSolution] = {}
-    share, most_unfinished = 1.0, float(OUT_OF_REACH)
-    limits = _limits(corrector, base_at, bounds)
+    limits = _SegmentLimits.of(corrector, base_at, bounds)
+    is_smooth = True
 
     def at(time: float) -> Floats:
-        nonlocal share
-        if time in solved:
-            return unknowns(solved[time])
-        base = base_at(time)
-        targets = pins.targets(time, base.places, base.anchor)
-        near = min(solved, key=lambda other: abs(other - time), default=None)
-        start = None if near is None else solved[near]
-        solved[time] = found = solve_correction(corrector, base.nodes, targets, start, throw=False)
-        share = min(share, max_feasible_share(corrector, base.samples, found.x, limits))
-        if sum(not each.is_finished for each in solved.values()) >= most_unfinished:
-            raise _OutOfReachError
-        return unknowns(found)
-
-    def unknowns(found: PointSolution) -> Floats:
+        if time not in solved:
+            near = min(solved, key=lambda other: abs(other - time), default=None)
+            start = None if near is None else solved[near]
+            solved[time] = _solve_at(corrector, base_at(time), pins, limits, time, start)
+        found = solved[time]
+        if is_smooth and (found.is_limited or not found.is_finished):
+            raise _AtLimitsError
         return np.append(found.x, [found.shift.real / size, found.shift.imag / size])
 
     def values(times: Floats) -> Floats:
         return np.array([at(time) for time in times.tolist()]).T
 
+    def largest_share(forms: Floats, series: PiecewiseSeries, count: int) -> float:
+        """Return the share of a series that keeps the limits between the solved times."""
+        return min(
+            max_feasible_share(
+                corrector, base_at(time).samples, (forms @ series(time))[:-2], limits.kept
+            )
+            for time in ((1.0 + chebyshev_nodes(count)) / 2).tolist()
+        )
+
+    resolve = partial(separate_variables, values, left_out=LEFT_OUT)
     try:
-        forms, series = separate_variables(
-            values, tolerance=TOLERANCE, left_out=LEFT_OUT, shortest=SHORTEST, degrees=DEGREES
-        )
-    except _OutOfReachError:
-        most_unfinished = np.inf
-        forms, series = separate_variables(
-            values, tolerance=np.inf, left_out=LEFT_OUT, degrees=(ROUGHLY,)
-        )
-    if share < 1.0:
-        # Near the limits the series may exceed them between the solved times.
-        for time in ((1.0 + chebyshev_nodes(CHECKED)) / 2).tolist():
-            x, samples = (forms @ series(time))[:-2], base_at(time).samples
-            share = min(share, max_feasible_share(corrector, samples, x, limits))
+        forms, series = resolve(tolerance=TOLERANCE, shortest=SHORTEST, degrees=DEGREES)
+        share = 1.0
+    except _AtLimitsError:
+        is_smooth = False
+        # Where limits act, corrections are not analytic in time: one series has to do. Pinned
+        # points are then within some hundredths of a pixel in a thousand.
+        for degree in DEGREES:
+            forms, series = resolve(tolerance=np.inf, degrees=(degree,))
+            share = largest_share(forms, series, CHECKED)
+            if share == 1.0:
+                break
+        else:
+            share = min(share, largest_share(forms, series, CHECKED_AGAIN))
     # One share for the whole segment, so that a limit reached for a moment causes no jolt.
     forms *= share
     count = known.count
@@ -157,21 +163,46 @@ def solve_pin_correction(
     bounds: Bounds,
     time: float,
 ) -> CorrectionSeries:
-    """Find the correction at a single time, which costs a fraction of the whole segment's.
+    """Find the correction at a single time, which costs a fraction of the whole segment's."""
+    limits = _SegmentLimits.of(corrector, base_at, bounds)
+    found = _solve_at(corrector, base_at(time), pins, limits, time)
+    return CorrectionSeries.of_frame(corrector, found.x, found.shift)
 
-    The share is that of this time alone. It differs from the segment's where the segment reaches
-    its limits.
+
+class _SegmentLimits(NamedTuple):
+    """Limits of ln σ_a, −ln σ_b and k in a segment, (3,).
+
+    `kept` are the bounds, widened by the extremes of the keyframes, and `inner` those of each
+    solved correction.
     """
-    limits, base = _limits(corrector, base_at, bounds), base_at(time)
+
+    kept: Floats
+    inner: Floats
+
+    @classmethod
+    def of(
+        cls,
+        corrector: PointCorrector,
+        base_at: Callable[[float], CorrectionBase],
+        bounds: Bounds,
+    ) -> Self:
+        ends = [extremes(corrector, base_at(time).samples) for time in (0.0, 1.0)]
+        inner = frame_limits(bounds, *(end + BEYOND_KEYS for end in ends), inside=INNER)
+        return cls(frame_limits(bounds, *(end + 2 * BEYOND_KEYS for end in ends)), inner)
+
+
+def _solve_at(
+    corrector: PointCorrector,
+    base: CorrectionBase,
+    pins: SegmentPins,
+    limits: _SegmentLimits,
+    time: float,
+    start: PointSolution | None = None,
+) -> PointSolution:
+    """Find the correction at a time, from one at another time."""
     targets = pins.targets(time, base.places, base.anchor)
-    found = solve_correction(corrector, base.nodes, targets, throw=False)
-    share = max_feasible_share(corrector, base.samples, found.x, limits)
-    return CorrectionSeries.of_frame(corrector, share * found.x, share * found.shift)
-
-
-def _limits(
-    corrector: PointCorrector, base_at: Callable[[float], CorrectionBase], bounds: Bounds
-) -> Floats:
-    """Return the limits of a segment: the bounds, widened by the extremes of the keyframes."""
-    ends = [extremes(corrector, base_at(time).samples) for time in (0.0, 1.0)]
-    return frame_limits(bounds, *ends)
+    own = extremes(corrector, base.samples) + WALL
+    inner = np.maximum(limits.inner, own)
+    return solve_within(
+        corrector, base.nodes, base.samples, targets, inner, width=WALL, start=start
+    )
