@@ -116,7 +116,7 @@ class TimelineLayout:
                     top=top,
                     bottom=top + tall,
                     is_active=is_active,
-                    depth=row.depth,
+                    row=row,
                 )
             )
             top += tall

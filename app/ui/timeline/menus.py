@@ -38,6 +38,7 @@ TANGENT_MODES = {
     TangentMode.STOP: (_("Stop"), _("The motion slows down to rest, and starts again")),
     TangentMode.HOLD: (_("Hold"), _("The pose stays until the next key")),
 }
+TRACK_MENU = "menu of track"
 NAME = 9.0  # em: largest width of a layer's name
 FACTORS = ((0.5, _("Half as long")), (2.0, _("Twice as long")))
 
@@ -104,12 +105,14 @@ def _paste_items(session: Session, frame: int) -> list[Action]:
 
 
 def draw_track_menu(bands: TimelineLayout) -> list[Action]:
-    """Draw the menu of the empty area between keys, if it is open."""
+    """Draw the menu of the empty area between keys, or of a channel's name, if it is open."""
     actions: list[Action] = []
-    if not imgui.begin_popup("menu of track"):
+    if not imgui.begin_popup(TRACK_MENU):
         return actions
     opened = imgui.get_mouse_pos_on_opening_current_popup()
     frame = bands.project.document.frames.clamp(round(bands.frame(opened.x)))
+    if opened.x < bands.left:
+        frame = playback.current_frame(bands.session, bands.project)
     text = _("Insert key at frame {frame}").format(frame=frame)
     if imgui.menu_item_simple(f"{text}###Insert key"):
         actions.append(do(keys.insert_key_in_row_at, frame))

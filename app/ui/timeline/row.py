@@ -35,7 +35,7 @@ class LayerRow:
     top: float
     bottom: float
     is_active: bool
-    depth: int = 0  # number of groups and switches around it
+    row: TreeRow
 
     @property
     def middle(self) -> float:

@@ -240,7 +240,10 @@ def _hint_of_place(bands: TimelineLayout) -> str:
             return _(
                 "Click a track to select it: then keys and drags of its handle go to the track"
             )
-        return _("Click a layer to see its handles and keys, wheel to see more layers")
+        return _(
+            "Click a layer to see its handles and keys, wheel to see more layers, right-click for "
+            "its menu"
+        )
     if y < bands.ruler_top:
         return _("Drag the ends of the preview range, double-click to play all frames")
     if bands.sounds_top <= y < bands.track_top:

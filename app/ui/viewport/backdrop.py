@@ -17,55 +17,64 @@ from engine.arrays import Bytes, Floats
 
 SQUARE = 12.0  # pixels at a scale of 1
 LEVELS = 256
-# NEAR: difference of brightness, 0 to 1, below which the drawing is hard to see on the backdrop.
-# MUCH: share of such area above which the other theme's checker is taken.
-NEAR, MUCH = 0.2, 0.6
+# NEAR: difference of brightness, 0 to 1, below which the drawing's edge is hard to see.
+# MUCH: share of such edge above which another checker is taken.
+NEAR, MUCH = 0.2, 0.5
 LUMA = np.array([0.2126, 0.7152, 0.0722])  # weights of red, green and blue, as in Rec. 709
-STEP = 4  # sampling distance in pixels
+RIM = 0.006  # width of the edge that is measured, in sizes of the picture
+OPAQUE = 128  # alpha
+# The two squares of a grey checker, on which both dark and light edges are visible.
+GREY = rgb("5f626a"), rgb("595c63")
 DIM = 0.45  # opacity of the desk's colour outside the camera's frame
 FAR = 1e3  # size of the dimmed area, in camera frames: larger than the viewport
 
 
-def measure_brightness(picture: Bytes) -> Floats:
-    """Return the brightness histogram of a picture's (h, w, 4) opaque area, shares of 1.
+def measure_edge(picture: Bytes) -> Floats:
+    """Return the brightness histogram along the edge of a picture's (h, w, 4) opaque area.
 
     Returns
     -------
     (256,) float64
-        From black to white.
+        From black to white, shares of 1.
     """
-    pixels = picture[::STEP, ::STEP].reshape(-1, 4)
-    levels = np.rint(pixels[:, :3] @ LUMA).astype(np.intp)
-    shares = np.bincount(levels, pixels[:, 3], LEVELS)
+    width = max(2, round(RIM * max(picture.shape)))
+    # What lies beyond the picture is transparent.
+    is_opaque = np.pad(picture[..., 3] >= OPAQUE, width)
+    shifted = (np.roll(is_opaque, by, axis) for by in (-width, width) for axis in (0, 1))
+    is_inside = np.logical_and.reduce(list(shifted))
+    is_edge = (is_opaque & ~is_inside)[width:-width, width:-width]
+    levels = np.rint(picture[is_edge][:, :3] @ LUMA).astype(np.intp)
+    shares = np.bincount(levels, minlength=LEVELS)
     return np.asarray(shares / max(shares.sum(), 1.0))
 
 
-def make_backdrop(backdrop: str, palette: Palette, brightness: Floats, scale: float) -> Backdrop:
-    """Return the backdrop. If the theme's checker hides the drawing, take the other theme's.
+def make_backdrop(backdrop: str, palette: Palette, edge: Floats, scale: float) -> Backdrop:
+    """Return the backdrop. If the theme's checker hides the drawing's edge, take a grey one.
 
     Parameters
     ----------
     backdrop : str
         "checker" or "#rrggbb".
-    brightness : (256,) float64
-        Of the drawing.
+    edge : (256,) float64
+        Brightness along the edge of the drawing.
     scale : float
         Pixels of the screen per pixel of the design.
     """
     if backdrop != CHECKER:
         return Backdrop(colour=to_rgba(rgb(backdrop)))
-    if _lost(brightness, palette.paper) > MUCH:
-        papers = PALETTES.values()
-        palette = min(papers, key=lambda other: _lost(brightness, other.paper))
-    paper, check = to_rgba(palette.paper), to_rgba(palette.check)
+    own, *others = sorted(PALETTES.values(), key=lambda other: other is not palette)
+    checkers = [(own.paper, own.check), GREY, *((each.paper, each.check) for each in others)]
+    lost = [_lost(edge, paper) for paper, _check in checkers]
+    found = 0 if lost[0] <= MUCH else min(range(len(lost)), key=lambda index: round(lost[index], 1))
+    paper, check = map(to_rgba, checkers[found])
     return Backdrop(colour=paper, checks=check, square=SQUARE * scale)
 
 
-def _lost(brightness: Floats, paper: ImVec4) -> float:
-    """Return the share of the drawing that is nearly as bright as the paper."""
+def _lost(edge: Floats, paper: ImVec4) -> float:
+    """Return the share of the drawing's edge that is nearly as bright as the paper."""
     level = float(np.array([paper.x, paper.y, paper.z]) @ LUMA)
     is_near = np.abs(np.arange(LEVELS) / (LEVELS - 1) - level) < NEAR
-    return float(brightness[is_near].sum())
+    return float(edge[is_near].sum())
 
 
 def draw_camera_frame(

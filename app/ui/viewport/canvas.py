@@ -165,7 +165,7 @@ def _scene(session: Session, project: Project, shown: LayerFrame, drawing: GpuRe
         scale = pixel_scale(session)
         return Scene(
             background=make_backdrop(
-                session.settings.preferences.backdrop, palette, drawing.brightness, scale
+                session.settings.preferences.backdrop, palette, drawing.edge, scale
             ),
             meshes=drawing.cut_view().meshes(),
             discs=mark_holes(project, palette, scale) if session.tools.mode == "holes" else (),
@@ -181,7 +181,7 @@ def _scene(session: Session, project: Project, shown: LayerFrame, drawing: GpuRe
     meshes = _posed(session, project, project.runtimes.displayed, drawing)
     return Scene(
         background=make_backdrop(
-            session.settings.preferences.backdrop, palette, drawing.brightness, pixel_scale(session)
+            session.settings.preferences.backdrop, palette, drawing.edge, pixel_scale(session)
         ),
         meshes=meshes,
         heat=heat,

@@ -310,11 +310,15 @@ def test_the_window_has_an_icon_where_windows_bring_one(monkeypatch, platform):
 
 @pytest.mark.parametrize(
     ("theme", "level", "stands_out"),
-    [("dark", 20, 150), ("dark", 128, None), ("light", 245, -150), ("light", 20, None)],
+    [("dark", 20, 60), ("dark", 160, None), ("light", 245, -120), ("light", 20, None)],
 )
 def test_a_drawing_stands_out_from_the_backdrop(window, tmp_path, theme, level, stands_out):
-    """A dark drawing in the dark theme lies on light squares, a light one likewise on dark ones."""
+    """A drawing with a dark edge lies on grey in the dark theme, as one with a light edge in light.
+
+    What is within the edge does not count.
+    """
     drawing = np.full((200, 200, 4), level, np.uint8)
+    drawing[60:140, 60:140, :3] = 255 - level
     drawing[..., 3] = 0
     drawing[50:150, 50:150, 3] = 255
     Image.fromarray(drawing).save(tmp_path / "plain.png")
@@ -328,7 +332,7 @@ def test_a_drawing_stands_out_from_the_backdrop(window, tmp_path, theme, level, 
         point = window.point(place)
         return picture.convert("L").getpixel((int(point.x), int(point.y)))
 
-    assert seen(100 + 100j) == pytest.approx(level, abs=3)
+    assert seen(55 + 100j) == pytest.approx(level, abs=3)
     paper = seen(10 + 100j)
     if stands_out is None:
         assert paper == pytest.approx(_level(theme), abs=16)

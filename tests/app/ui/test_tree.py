@@ -12,7 +12,9 @@ from PIL import Image, ImageDraw
 
 from app.document import (
     DRAW_ORDER,
+    OPACITY,
     TRANSFORM,
+    Channel,
     cycle_commands,
     group_commands,
     is_visible,
@@ -23,6 +25,7 @@ from app.document import (
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import insert_key
+from app.editor.actions.timing import channel_keys, timeline_drag
 from app.editor.layering.deletion import delete_layers
 from app.editor.layering.layer_list import layer_at, toggle_layers_hidden
 from app.editor.layering.layer_selection import (
@@ -38,6 +41,7 @@ from app.editor.layering.parenting import (
     reparent_layer,
 )
 from app.editor.layering.switches import create_switch, key_switch
+from app.ui.panel import is_in_front
 
 WIDTH, HEIGHT = 240, 200
 FACES = {
@@ -622,3 +626,34 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
     assert [each.id for each in layers_in_draw_order(scene.document, 12)][-1] == ids["stick"]
     use(lambda robot: robot.item_click("**/key draw_order"))
     assert scene.document.layer(ids["stick"]).keys_of(DRAW_ORDER) == ()
+
+
+def test_rows_of_the_timeline_have_the_menus_of_layers_groups_and_channels(window, scene, ids):
+    def choose(item, entry):
+        def play(robot):
+            robot.set_ref("Timeline")
+            robot.item_click(f"**/{item}", 1)
+            robot.set_ref("//$FOCUSED")
+            robot.item_click(f"**/{entry}")
+
+        window.run(play)
+        window.settle()
+
+    window.act(select_layers, ids["hat"], ids["head"])
+    choose(f"name {ids['head']}", "Hide 2 layers")
+    assert [each.name for each in scene.document.layers if each.hidden] == ["head", "hat"]
+    choose(f"name {ids['hat']}", "Group layers")
+    assert len(scene.document.groups) == 1
+    choose("name", "Select its layers")
+    assert set(scene.selected_layers) == {ids["hat"], ids["head"]}
+    window.show_tab("Handle")
+    choose(f"name {ids['stick']}", "Rename…")
+    assert is_in_front("Layers")
+    window.run(lambda robot: robot.key_chars_replace_enter("pole"))
+    assert scene.document.layer(ids["stick"]).name == "pole"
+    window.act(set_active_layer, ids["oh"])
+    window.act(channel_keys.insert_channel_key, Channel(OPACITY, ids["oh"]))
+    window.act(timeline_drag.toggle_lanes, ids["oh"])
+    playback.scrub(window.session, 9)
+    choose(f"lane {OPACITY.name} {ids['oh']} None/name", "###Insert key")
+    assert 9 in [key.frame for key in scene.document.layer(ids["oh"]).channels[OPACITY.name, None]]

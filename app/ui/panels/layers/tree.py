@@ -37,8 +37,8 @@ from app.editor.layering.pictures import (
 )
 from app.editor.layering.switches import rename_switch
 from app.texts import _, ngettext
+from app.ui.bars.layer_menus import draw_layer_menu
 from app.ui.panels.layers.dragging import drag_layer_row, scroll_while_dragged
-from app.ui.panels.layers.menus import draw_layer_menu
 from app.ui.panels.layers.row import (
     FOLD,
     GAP,

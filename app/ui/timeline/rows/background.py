@@ -8,7 +8,7 @@ from app.ui.style.theme import colour_u32
 from app.ui.style.widgets import draw_tooltip, is_pressed
 from app.ui.timeline.keys import select_lane
 from app.ui.timeline.layout import ROUNDING, TimelineLayout, was_dragged
-from app.ui.timeline.menus import draw_track_menu
+from app.ui.timeline.menus import TRACK_MENU, draw_track_menu
 from app.ui.timeline.row import ChannelLane
 from app.ui.timeline.rows.track_residuals import describe_residual
 
@@ -49,7 +49,7 @@ def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         if channel != bands.project.channel:
             actions += select_lane(channel, {})
-        imgui.open_popup("menu of track")
+        imgui.open_popup(TRACK_MENU)
     return actions + draw_track_menu(bands)
 
 

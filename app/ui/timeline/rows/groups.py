@@ -18,6 +18,7 @@ from app.editor import Action, do
 from app.editor.actions import editing, playback
 from app.editor.layering.layer_selection import select_layers, set_active_layer, toggle_tree_row
 from app.texts import _, ngettext
+from app.ui.bars.layer_menus import draw_layer_menu
 from app.ui.style.theme import SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
@@ -55,6 +56,7 @@ def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
         imgui.push_id(row.key)
         if bands.button("name", low, high):
             actions.append(do(select_layers, *row.layers))
+        actions += draw_layer_menu(bands.project, row, has_rename=False)[0]
         if is_hovered_or_held():
             draw_list.add_rect_filled(low, high, colour_u32(palette.hovered), 0.2 * em)
         if begin_tooltip():

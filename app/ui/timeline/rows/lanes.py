@@ -41,7 +41,7 @@ from app.ui.timeline.keys import (
     select_lane,
 )
 from app.ui.timeline.layout import THIN, TimelineLayout, format_seconds
-from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu
+from app.ui.timeline.menus import TANGENT_MODES, TRACK_MENU, draw_key_menu, draw_track_menu
 from app.ui.timeline.row import ChannelLane, LayerRow, find_least_gap, has_lanes
 from app.ui.timeline.rows.sounds import draw_mute_button, draw_sound_background
 from app.ui.timeline.rows.tracks import draw_track_range, format_track_name
@@ -105,6 +105,10 @@ def _draw_name(bands: TimelineLayout, lane: ChannelLane) -> list[Action]:
         actions += select_lane(lane.channel, {})
         if track is not None:
             actions.append(do(editing.select_handles, frozenset(track.handles)))
+    if imgui.is_item_clicked(imgui.MouseButton_.right):
+        actions += select_lane(lane.channel, {})
+        imgui.open_popup(TRACK_MENU)
+    actions += draw_track_menu(bands)
     if lane.is_chosen or is_hovered_or_held():
         chosen = colour_u32(palette.accent, CHOSEN)
         colour = chosen if lane.is_chosen else colour_u32(palette.hovered)

@@ -17,8 +17,11 @@ from app.document import (
     pose_channel,
     visibility_keys,
 )
-from app.editor import Action
+from app.editor import Action, do
+from app.editor.layering.layer_list import rename_active_layer
+from app.editor.layering.layer_selection import set_active_layer
 from app.texts import _
+from app.ui.bars.layer_menus import draw_layer_menu
 from app.ui.style.theme import CHOSEN, SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
@@ -90,6 +93,10 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
         box = ImVec2(low.x, row.top), ImVec2(high.x - 0.3 * em, row.bottom)
         if bands.button(f"name {row.layer.id}", *box):
             actions += select_lane(pose_channel(row.layer.id), {})
+        chosen, asks = draw_layer_menu(bands.project, row.row)
+        actions += chosen
+        if asks:
+            actions += [do(set_active_layer, row.layer.id), rename_active_layer.action]
         if row.is_active or is_hovered_or_held():
             colour = (
                 colour_u32(palette.accent, CHOSEN) if row.is_active else colour_u32(palette.hovered)
@@ -104,7 +111,7 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
         icon = icons.ICON_FA_IMAGE if row.layer.still else icons.ICON_FA_PERSON
         colour = colour_u32(palette.text if is_visible(document, row.layer, frame) else palette.dim)
         # Indents are those of groups; a sign and a label tell the parent.
-        indent = low.x + INDENT * min(row.depth, DEEPEST_INDENT) * em
+        indent = low.x + INDENT * min(row.row.depth, DEEPEST_INDENT) * em
         with push_text_size(SMALL):
             left = indent + (1.8 + EXPANDER_WIDTH * has_lanes(row.layer)) * em
             room = box[1].x - left - 0.8 * em

@@ -28,6 +28,7 @@ from app.ui.style.widgets import (
 )
 from app.ui.timeline.easing_curve import draw_easing_curve, draw_easing_popup, fill_easing_curve
 from app.ui.timeline.layout import ROUNDING, TimelineLayout
+from app.ui.timeline.menus import TRACK_MENU
 from app.ui.timeline.rows.background import begin_key_box, is_plain_click
 
 LEAST = 0.6  # em: narrower bars are not drawn
@@ -149,7 +150,7 @@ def _draw_segment(
         imgui.open_popup(popup)
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         actions.append(do(tracks.select_channel, None))
-        imgui.open_popup("menu of track")
+        imgui.open_popup(TRACK_MENU)
     is_open = imgui.is_popup_open(popup)
     hot = is_open or (is_hovered_or_held() and bands.project.timeline.gesture is None)
     if bands.project.timeline.gesture is None and not is_open:

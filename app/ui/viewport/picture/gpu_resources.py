@@ -11,7 +11,7 @@ from app.render import DrawnMesh, MemberMesh, Renderer, shader_is_faster
 from app.render.gpu.mesh import GpuMesh, PosedMesh
 from app.render.gpu.picture import GpuPicture
 from app.storage import Picture, release_pages
-from app.ui.viewport.backdrop import measure_brightness
+from app.ui.viewport.backdrop import measure_edge
 from app.ui.viewport.cutout_overlay import CutView
 from app.ui.viewport.stiffness_overlay import measure_vertex_stiffness
 from engine.arrays import Bytes, Floats
@@ -51,12 +51,12 @@ class GpuResources:
         self._stiff: tuple[Layer, DeformMesh, Floats] | None = None
 
     @property
-    def brightness(self) -> Floats:
-        """Brightness of the backmost picture as it is cut out. The backdrop must differ from it."""
+    def edge(self) -> Floats:
+        """Brightness along the edge of the backmost picture. The backdrop must differ from it."""
         (first, *_) = self.project.document.layers
         texture = self.project.runtimes.layers[first.id].cut.value.texture
         if self._measured is None or self._measured[0] is not texture:
-            self._measured = texture, measure_brightness(texture)
+            self._measured = texture, measure_edge(texture)
         return self._measured[1]
 
     def drawn_mesh(self, layer: int, mesh: DeformMesh, number: int = 0) -> DrawnMesh | MemberMesh:

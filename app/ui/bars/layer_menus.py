@@ -1,4 +1,4 @@
-"""The menus of rows in the tree of layers."""
+"""The menus of layers, groups and switches: of their rows in the list and in the timeline."""
 
 from collections.abc import Sequence
 
@@ -45,11 +45,14 @@ from app.ui.style.widgets import menu_entry
 SOLO = icons.ICON_FA_BINOCULARS
 
 
-def draw_layer_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]:
+def draw_layer_menu(
+    project: Project, row: TreeRow, *, has_rename: bool = True
+) -> tuple[list[Action], bool]:
     """Draw the menu of the last item, a row. Return also whether rename was chosen."""
     if not imgui.begin_popup_context_item(f"menu of layer {row.key}"):
         return [], False
-    asks = menu_entry(_("Rename…"), icons.ICON_FA_PEN, shown_keys(layer_list.rename_active_layer))
+    keys = shown_keys(layer_list.rename_active_layer)
+    asks = has_rename and menu_entry(_("Rename…"), icons.ICON_FA_PEN, keys)
     if row.layer is not None:
         actions = _of_layer(project, row.layer)
     elif row.switch_group is not None:
