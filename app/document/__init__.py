@@ -282,6 +282,7 @@ from app.document.queries.material.limbs import (
     Limbs as Limbs,
     PlacedLimbs as PlacedLimbs,
     find_limbs as find_limbs,
+    motion_anchor as motion_anchor,
 )
 from app.document.queries.material.local_limits import limits_along as limits_along
 from app.document.queries.memo import memoized_on as memoized_on

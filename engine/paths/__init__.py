@@ -8,6 +8,7 @@ Imports: `engine.domain.meshing`, `engine.geometry`.
 from engine.paths.complex_log import (
     continue_logarithm as continue_logarithm,
     root_sheets as root_sheets,
+    shorter_turns as shorter_turns,
 )
 from engine.paths.integration_paths import (
     IntegrationPaths as IntegrationPaths,

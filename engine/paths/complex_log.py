@@ -96,6 +96,28 @@ def root_sheets(anchor_fz: Complexes, turns: npt.ArrayLike | None = None) -> Int
     return freeze(np.concatenate([[0], sheets]).astype(np.int32))
 
 
+def shorter_turns(anchor_fz: Complexes, leads: Floats) -> Integers:
+    """Return full turns for `root_sheets` that turn the whole shape the shorter way.
+
+    Where a part of the shape curls by more than half a turn, the shorter way of the anchor may be
+    the longer one of the rest.
+
+    Parameters
+    ----------
+    anchor_fz : complex128, shape (q,)
+        f_z of the keyframes at the anchor.
+    leads : float64, shape (q,)
+        By how much each keyframe turns the shape further than the anchor, in the mean.
+
+    Returns
+    -------
+    int32, shape (q − 1,)
+        With them the mean turn between neighbouring keyframes is at most π.
+    """
+    change = np.angle(anchor_fz[1:] / anchor_fz[:-1]) + np.diff(leads)
+    return freeze(-np.round(change / (2 * np.pi)).astype(np.int32))
+
+
 def _turns_along(
     starts: Complexes, ends: Complexes, pace: float, evaluate: Callable[[Complexes], Complexes]
 ) -> Floats:

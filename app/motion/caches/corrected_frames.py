@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from app.document import Clip, Document, clip_of
+from app.document import Clip, Document, clip_of, motion_anchor
 from app.motion.inbetweens.frame_corrector import (
     BaseMotionFrame,
     FrameCorrector,
@@ -203,9 +203,11 @@ def _prepare(
     layer = clip.layer
     sibling = siblings.get(layer.id)
     is_own = sibling is not None and sibling.domain.cage is layer.domain.cage
-    if sibling is None or not is_own or sibling.anchor != layer.anchor:
+    if sibling is None or not is_own or sibling.anchor != motion_anchor(layer):
         outline = layer.domain.outline
-        sibling = PoseSampler(layer.domain, anchor=layer.anchor, points=outline, sibling=sibling)
+        sibling = PoseSampler(
+            layer.domain, anchor=motion_anchor(layer), points=outline, sibling=sibling
+        )
     carried = find_parent_motion(document, layer.id, siblings)
     return FrameCorrector(clip, clip.layer.variant, sibling, carried)
 

@@ -10,6 +10,7 @@ from typing import Literal
 from app.document import (
     Clip,
     Pose,
+    motion_anchor,
     pose_segments,
 )
 from app.motion.caches.cached_frames import CachedFrames
@@ -104,7 +105,7 @@ class InbetweenCache(CachedFrames):
         if needs_correction(clip):
             # Corrections need the whole segment.
             return None
-        if sampler is None or sampler.anchor != layer.anchor:
+        if sampler is None or sampler.anchor != motion_anchor(layer):
             return None
         return partial(compute_frame, clip, frame, self.mesh, sampler, keep=self._poses())
 

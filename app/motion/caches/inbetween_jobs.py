@@ -3,7 +3,7 @@
 from collections.abc import Generator, Mapping, Sequence
 from typing import NamedTuple
 
-from app.document import Clip, Pose, pose_segments, segment_time_at
+from app.document import Clip, Pose, motion_anchor, pose_segments, segment_time_at
 from app.motion.inbetweens.frame_corrector import needs_correction
 from app.motion.inbetweens.pins.auto_pins import AutoPins
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -106,8 +106,12 @@ def compute_segments(
                 for number in wanted
             },
         )
-    if sampler is None or sampler.domain is not mesh.domain or sampler.anchor != layer.anchor:
-        sampler = PoseSampler(mesh.domain, anchor=layer.anchor, sibling=sampler)
+    if (
+        sampler is None
+        or sampler.domain is not mesh.domain
+        or sampler.anchor != motion_anchor(layer)
+    ):
+        sampler = PoseSampler(mesh.domain, anchor=motion_anchor(layer), sibling=sampler)
     pins = AutoPins(clip, layer.variant, sampler)
     intervals = {
         segment_key(clip, number): CachedSegment(

@@ -1,6 +1,6 @@
 """The motion of a clip at any frame, for exports, attachments and checks."""
 
-from app.document import Clip, Variant
+from app.document import Clip, Variant, motion_anchor
 from app.motion.inbetweens.frame_corrector import FrameCorrector, needs_correction
 from app.motion.inbetweens.keyframe_motion import KeyframeMotion
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -35,10 +35,12 @@ class Animation:
         if (
             sampler is None
             or sampler.domain is not clip.layer.domain
-            or sampler.anchor != clip.layer.anchor
+            or sampler.anchor != motion_anchor(clip.layer)
             or (points is not None and points is not sampler.sites.points)
         ):
-            sampler = PoseSampler(clip.layer.domain, anchor=clip.layer.anchor, points=points)
+            sampler = PoseSampler(
+                clip.layer.domain, anchor=motion_anchor(clip.layer), points=points
+            )
         self.sampler = sampler
         self.base = KeyframeMotion(clip, self.variant, sampler)
         self.carried = carried

@@ -14,7 +14,7 @@ from app.motion.inbetweens.outline_cache import (
     have_same_outline,
     nbytes_or_0,
 )
-from engine.arrays import Complexes, Indices, freeze, nbytes_of
+from engine.arrays import Complexes, Indices, Integers, freeze, nbytes_of
 from engine.dirichlet import Extension
 from engine.domain import MeshedDomain
 from engine.interpolation import (
@@ -123,9 +123,7 @@ class PoseSampler:
         """Drop the samples of other poses."""
         with self._lock:
             self._samples = {p: s for p, s in self._samples.items() if p in poses}
-        known = self.known
-        with known.guard:
-            known.tangents = {k: t for k, t in known.tangents.items() if poses >= set(k[0])}
+        self.known.keep_tangents(poses)
 
     def samples(self, pose: Pose) -> KeyframeSamples:
         with self._lock:
@@ -148,7 +146,7 @@ class PoseSampler:
     ) -> Inbetweens:
         """Return the in-betweens of two poses alone, with additional full turns."""
         samples = [self.samples(first), self.samples(second)]
-        sheets = root_sheets(np.array([sample.anchor_fz for sample in samples]), (turns,))
+        sheets = self._sheets(samples, (turns,))
         interval = self._interval(KeyframeBlend.of(samples, sheets), variant, Bounds())
         return self._prepared(interval, variant)
 
@@ -247,15 +245,12 @@ class PoseSampler:
     def _tangent(
         self, poses: Sequence[Pose], joint: InteriorKnot, bounds: Bounds, variant: Variant
     ) -> Tangent:
-        key = tuple(poses), joint, bounds, variant
-        with self.known.guard:
-            found = self.known.tangents.get(key)
-        if found is None:
+
+        def make() -> Tangent:
             maps = [self.samples(pose).map for pose in poses]
-            found = BLENDS[variant].tangent(maps, joint, bounds, self.sites.boundary)
-            with self.known.guard:
-                self.known.tangents[key] = found
-        return found
+            return BLENDS[variant].tangent(maps, joint, bounds, self.sites.boundary)
+
+        return self.known.tangent((tuple(poses), joint, bounds, variant), make)
 
     def weights_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> TimeWeights:
         """Return the time weights of a segment's keys."""
@@ -265,23 +260,28 @@ class PoseSampler:
     def segment_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> KeyframeSegment:
         """Return a segment as the engine needs it, sampled here."""
         samples = [self.samples(key.pose) for key in segment.keys]
-        anchors = np.array([each.anchor_fz for each in samples])
         if not segment.has_smooth_tangent:
-            keyframe_blend = KeyframeBlend.of(samples, root_sheets(anchors, segment.revolutions))
+            keyframe_blend = KeyframeBlend.of(samples, self._sheets(samples, segment.revolutions))
             return self._interval(keyframe_blend, variant, Bounds())
         count = len(samples) - sum(segment.apart)
-        sheets = [*root_sheets(anchors[:count], segment.revolutions[: count - 1])]
+        sheets = [*self._sheets(samples[:count], segment.revolutions[: count - 1])]
         # The outer keys of other cycles are reached from the middle keys of their windows.
         others = zip(range(count, len(samples)), segment.revolutions[count - 1 :], strict=True)
         for side, (_, middle, _) in enumerate(segment.windows):
             if segment.apart[side]:
                 other, turns = next(others)
                 pair = [middle, other] if side == 0 else [other, middle]
-                change = int(root_sheets(anchors[pair], (turns,))[1])
+                change = int(self._sheets([samples[each] for each in pair], (turns,))[1])
                 sheets.append(sheets[middle] + (change if side == 0 else -change))
         weights = self.weights_of(segment, bounds, variant)
         keyframe_blend = KeyframeBlend.of(samples, freeze(np.array(sheets, np.int32)), weights)
         return self._interval(keyframe_blend, variant, bounds)
+
+    def _sheets(self, samples: Sequence[KeyframeSamples], turns: Sequence[int]) -> Integers:
+        """Return the branches of the logarithms, with full turns between neighbours."""
+        if self.anchor is None:
+            return self.known.sheets(samples, turns, self.sites.boundary)
+        return root_sheets(np.array([each.anchor_fz for each in samples]), turns)
 
     def _prepared(self, interval: KeyframeSegment, variant: Variant) -> Inbetweens:
         """Prepare in-betweens; all samplers of the domain share the solution on the boundary."""

@@ -5,6 +5,7 @@ from app.document import (
     Pose,
     Variant,
     keyed_pose_at,
+    motion_anchor,
     pinned_segments,
     pose_segments,
     segment_time_at,
@@ -29,9 +30,16 @@ def segment_key(clip: Clip, interval: int, variant: Variant | None = None) -> Se
     if clip.baseline is None:
         pinned = pinned_segments(clip)[interval]
         pins = () if pinned is None else (pinned.content,)
-        return *maps, *segment.revolutions, *joined, layer.anchor, variant or layer.variant, *pins
+        return (
+            *maps,
+            *segment.revolutions,
+            *joined,
+            motion_anchor(layer),
+            variant or layer.variant,
+            *pins,
+        )
     rest = (bounds, tuple(handle.position for handle in layer.handles), clip.frames)
-    return *maps, *segment.revolutions, *joined, layer.anchor, clip.baseline, *rest
+    return *maps, *segment.revolutions, *joined, motion_anchor(layer), clip.baseline, *rest
 
 
 def segment_poses(clip: Clip, interval: int) -> tuple[Pose, ...]:

@@ -11,6 +11,7 @@ from app.document import (
     Pose,
     Variant,
     limits_along,
+    motion_anchor,
     slider_poses,
     slider_weights_at,
     with_stiffness,
@@ -89,7 +90,7 @@ class SliderStage:
             )
             beside = PoseSampler(
                 layer.domain,
-                anchor=layer.anchor,
+                anchor=motion_anchor(layer),
                 points=np.array([sampler.sites.anchor]),
                 values_at=solver.nodes,
                 sibling=sampler,

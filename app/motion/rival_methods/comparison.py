@@ -3,7 +3,7 @@
 import numpy as np
 
 from app.baseline import Baseline
-from app.document import Clip, keyed_pose_at, segment_keys, segment_time_at
+from app.document import Clip, keyed_pose_at, motion_anchor, segment_keys, segment_time_at
 from app.motion.rival_methods.mesh_keyframes import MeshFrame, MeshInbetweens
 from app.motion.rival_methods.preparation import prepare_baseline
 from engine.domain import MeshedDomain
@@ -46,7 +46,7 @@ def compute_baseline(
         domain.mesh.vertices,
         domain.mesh.triangles,
         outline=domain.outline,
-        anchor=clip.layer.anchor,
+        anchor=motion_anchor(clip.layer),
         turns=[keys[0].revolutions],
         handles=np.array([handle.position for handle in clip.layer.handles], dtype=np.complex128),
         bounds=clip.layer.bounds,

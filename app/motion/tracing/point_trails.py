@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Pose, keyed_pose_at, segment_time_at
+from app.document import Clip, Pose, keyed_pose_at, motion_anchor, segment_time_at
 from app.motion.inbetweens.animation import Animation
 from app.motion.inbetweens.frame_corrector import needs_correction
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -55,7 +55,7 @@ class PointTrails:
         if earlier is None:
             return
         layer, own = earlier.clip.layer, clip.layer
-        is_same = layer.domain is own.domain and layer.anchor == own.anchor
+        is_same = layer.domain is own.domain and motion_anchor(layer) == motion_anchor(own)
         if is_same and np.array_equal(points, earlier.points):
             most = REMEMBERED * (1 + clip.frames.last - clip.frames.first)
             self.sampler = earlier.sampler
@@ -94,7 +94,7 @@ class PointTrails:
         if self._animation is None:
             layer = self.clip.layer
             sampler = self.sampler or PoseSampler(
-                layer.domain, anchor=layer.anchor, points=self.points, sibling=self._sibling
+                layer.domain, anchor=motion_anchor(layer), points=self.points, sibling=self._sibling
             )
             self._animation = Animation(self.clip, sampler=sampler, carried=self._carried)
             self.sampler = sampler

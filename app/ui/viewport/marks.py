@@ -5,7 +5,15 @@ from functools import lru_cache
 import numpy as np
 from imgui_bundle import ImVec4
 
-from app.document import Clip, Track, misses_target, pinned_handles, segment_time_at, track_at
+from app.document import (
+    Clip,
+    Track,
+    misses_target,
+    motion_anchor,
+    pinned_handles,
+    segment_time_at,
+    track_at,
+)
 from app.editor import Project, Session
 from app.editor.tools.tool import scene_outlines
 from app.motion import BoundingBox, DeformMesh, LayerFrame, MeshPoints, MotionPaths
@@ -123,7 +131,7 @@ def find_anchor(project: Project, shown: LayerFrame) -> complex | None:
     """Return the anchor's place in the shown frame; None if a handle marks it or none exists."""
     layer, sampler = shown.clip.layer, project.layer_runtime.store.sampler
     rest = layer.anchor
-    if rest is None and sampler is not None and sampler.anchor is None:
+    if rest is None and sampler is not None and sampler.anchor == motion_anchor(layer):
         rest = sampler.sites.anchor
     if rest is None and len(project.document.layers) > 1:
         # Before any motion, the anchor is visible so that the layer can be attached there.

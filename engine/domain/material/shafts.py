@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from engine.arrays import Complexes, Floats, readonly
+from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.domain.material.end_parts import EndPart
 from engine.domain.material.limb import (
     measure_distances,
@@ -18,10 +18,17 @@ from engine.domain.material.limb import (
     require_bone,
     spread_points,
 )
-from engine.geometry import as_xy, shapely_region
+from engine.geometry import (
+    as_xy,
+    contains,
+    deepest_point,
+    distance_to_boundary,
+    shapely_region,
+)
 
 POINTS = 5  # on the axis of a bone
 BODY_POINTS = 200
+LATTICE = 64  # places along the longer side among which the body's anchor is chosen
 # A shaft keeps clear of a joint by this many half widths, and by at most this part of the bone.
 CLEAR, MOST_CLEAR = 0.9, 0.4
 # The drawing is a limb where it is narrower than this part of the bone's length.
@@ -123,19 +130,43 @@ def body_points(
 ) -> Complexes:
     """Return points of the outline (≤ `BODY_POINTS`) that belong to no limb, far from each other.
 
-    Parameters
-    ----------
-    candidates : complex128
-        Points on the outline.
-    limbs : sequence of LimbCut
-        A limb that no cut separates from its root gets all that is beside its first bone.
+    `candidates` are points on the outline; `limbs` are as in `is_in_body`.
     """
-    whole, places = shapely_region(loops[0], loops[1:]), shapely.points(as_xy(candidates))
-    is_body = np.ones(len(candidates), dtype=np.bool_)
+    left = candidates[is_in_body(loops, candidates, limbs)]
+    return readonly(left[spread_points(left, BODY_POINTS)])
+
+
+def body_anchor(loops: Sequence[Complexes], limbs: Sequence[LimbCut]) -> complex | None:
+    """Return a place deep in the body; None if that is where the drawing is deepest of all.
+
+    A body without a place is a cap at the root of its only limb, which is returned.
+    """
+    outline, *holes = loops
+    deepest = np.array([deepest_point(outline, holes)])
+    if is_in_body(loops, deepest, limbs)[0]:
+        return None
+    width, height = np.ptp(outline.real), np.ptp(outline.imag)
+    step = max(width, height) / LATTICE
+    x, y = (np.arange(step / 2, side, step) for side in (width, height))
+    places = outline.real.min() + 1j * outline.imag.min() + (x[:, None] + 1j * y).ravel()
+    places = places[contains(outline, places, holes=holes)]
+    places = places[is_in_body(loops, places, limbs)]
+    if not len(places):
+        return limbs[0].root
+    return complex(places[distance_to_boundary(outline, places, holes).argmax()])
+
+
+def is_in_body(loops: Sequence[Complexes], points: Complexes, limbs: Sequence[LimbCut]) -> Booleans:
+    """Return for points of the drawing whether they belong to no limb.
+
+    A limb that no cut separates from its root gets all that is beside its first bone.
+    """
+    whole, places = shapely_region(loops[0], loops[1:]), shapely.points(as_xy(points))
+    is_body = np.ones(len(points), dtype=np.bool_)
     for limb in limbs:
         way = limb.joint - limb.root
-        along = ((candidates - limb.root) * np.conj(way)).real / abs(way) ** 2
-        away = np.abs(candidates - limb.root - np.clip(along, 0, 1) * way)
+        along = ((points - limb.root) * np.conj(way)).real / abs(way) ** 2
+        away = np.abs(points - limb.root - np.clip(along, 0, 1) * way)
         beside = np.where(along > THIGH, BESIDE_THIGH, 1.0)
         is_body &= away > beside * limb.shape.half_widths.max()
         parts = _cut_limb(loops, whole, limb)
@@ -143,8 +174,7 @@ def body_points(
             own = _nearest_part(parts, limb.end)
             distances = [shapely.distance(part, places) for part in parts]
             is_body &= np.argmin(distances, axis=0) != own
-    left = candidates[is_body]
-    return readonly(left[spread_points(left, BODY_POINTS)])
+    return is_body
 
 
 def larger_end(loops: Sequence[Complexes], start: complex, end: complex) -> int:

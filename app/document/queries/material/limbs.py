@@ -18,7 +18,7 @@ from engine.arrays import Complexes
 from engine.deform import Armature, Hinge, Shaft, Ties
 from engine.domain import MeshedDomain
 from engine.domain.material.line_ties import BendingPlace, tie_lines
-from engine.domain.material.shafts import LimbCut, LimbShape, body_points, shaft_points
+from engine.domain.material.shafts import LimbCut, LimbShape, body_anchor, body_points, shaft_points
 from engine.geometry import Similarity
 from engine.maps import Boundary
 
@@ -66,6 +66,7 @@ class Limbs:
 
     limbs: tuple[LimbChain, ...]
     body: Complexes  # points of the outline that belong to no limb
+    anchor: complex | None  # in the body, for in-betweens; None lets the engine choose
     ties: Ties  # across the drawn line at joints
 
     @cached_property
@@ -188,4 +189,15 @@ def _limbs_in(
     ]
     lines = tie_lines(domain.loops, bending)
     ties = Ties(lines.starts, lines.ends, LINE_STIFFNESS * lines.shares)
-    return Limbs(limbs=tuple(limbs), body=body, ties=ties)
+    anchor = body_anchor(domain.loops, cuts)
+    return Limbs(limbs=tuple(limbs), body=body, anchor=anchor, ties=ties)
+
+
+def motion_anchor(layer: Layer) -> complex | None:
+    """Return the anchor of a layer's in-betweens; None lets the engine choose.
+
+    It is the layer's own, or lies in the body of a layer with bones: where the body stays, nothing
+    turns it or moves it away.
+    """
+    limbs = find_limbs(layer) if layer.anchor is None else None
+    return layer.anchor if limbs is None else limbs.anchor

@@ -13,6 +13,7 @@ from app.document import (
     find_chains,
     find_limbs,
     ground_velocity_at,
+    motion_anchor,
     pinned_segments,
     pose_segments,
     with_stiffness,
@@ -222,7 +223,7 @@ def prepare_corrector(
     corrector = corrector_for(with_stiffness(layer, sites.boundary), sites.anchor, points)
     sampler = PoseSampler(
         layer.domain,
-        anchor=layer.anchor,
+        anchor=motion_anchor(layer),
         points=points,
         values_at=value_points_for_corrections(corrector),
         sibling=sibling,

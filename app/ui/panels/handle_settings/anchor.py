@@ -2,7 +2,7 @@
 
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from app.document import Handle, shape_commands
+from app.document import Handle, motion_anchor, shape_commands
 from app.editor import Action, Project, do
 from app.editor.actions import editing
 from app.editor.layering.anchors import toggle_anchor_at_handle
@@ -17,7 +17,10 @@ def draw_anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Acti
     layer = project.layer
     holder = next((h.name for h in layer.handles if h.position == layer.anchor), None)
     if layer.anchor is None:
-        small_text(look, _("Automatic: in-betweens turn around the middle of the shape."))
+        text = _("Automatic: in-betweens turn around the middle of the shape.")
+        if motion_anchor(layer) is not None:
+            text = _("Automatic: in-betweens turn around the body that carries the bones.")
+        small_text(look, text)
     elif holder is not None:
         name = shorten_text(holder, 12 * look.em)
         small_text(
