@@ -29,6 +29,10 @@ from app.solving.motion_preset.joints_file import (
     find_joints as find_joints,
     load_joints as load_joints,
 )
+from app.solving.motion_preset.limb_cuts import (
+    PARTED as PARTED,
+    find_limb_cuts as find_limb_cuts,
+)
 from app.solving.motion_preset.motion_request import (
     MotionRequest as MotionRequest,
     find_facing as find_facing,

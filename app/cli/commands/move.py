@@ -17,6 +17,7 @@ from app.texts import _
 if TYPE_CHECKING:
     from app.document import Document
     from app.solving import JointsFile, MotionRequest
+    from engine.arrays import Bytes
 
 EPILOG = _(
     """\
@@ -181,7 +182,7 @@ def run(arguments: argparse.Namespace) -> int:
         parameters=parameters,
         facing={"left": -1, "right": 1, None: None}[arguments.facing],
     )
-    document = _solve(opened.document, request)
+    document = _solve(opened.document, request, opened.pictures[layer.id].rgba)
     save_drawing(arguments.out, opened, document)
     length = document.frames.last - document.frames.first
     summary = (
@@ -227,13 +228,13 @@ def _read_joints(arguments: argparse.Namespace) -> "JointsFile":
     return replace(given, kind=arguments.kind)
 
 
-def _solve(document: "Document", request: "MotionRequest") -> "Document":
+def _solve(document: "Document", request: "MotionRequest", rgba: "Bytes") -> "Document":
     """Return the document with the motion; print notices about unreachable targets."""
     from app.solving import find_facing, start_motion_solve, step_motion_solve
 
     (layer,) = document.layers
     with StatusLine() as status:
-        solve = start_motion_solve(document, layer.id, request)
+        solve = start_motion_solve(document, layer.id, request, rgba)
         if request.facing is None and request.kind in {"biped-side", "four-legs"}:
             is_left = find_facing(layer, request) < 0
             print_line(_("facing: left (guessed)") if is_left else _("facing: right (guessed)"))

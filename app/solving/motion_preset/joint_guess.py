@@ -37,7 +37,7 @@ def guess_layer_kind(layer: Layer, rgba: Bytes | None) -> BodyKind:
     """Return the kind of body that a layer looks like."""
     loops = layer.domain.loops
     kind = guess_kind(loops)
-    if kind.name != "chain" or rgba is None:
+    if rgba is None:
         return kind
     return find_kind_by_legs(kind, track_legs(loops, rgba, layer.corner))
 

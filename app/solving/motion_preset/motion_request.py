@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import shapely
 
 from app.document import Layer, MotionEdits
 from app.errors import LissomError
@@ -19,10 +20,9 @@ from app.rigging import (
 from app.solving.motion_preset.rigid_points import find_rigid_points
 from app.texts import _
 from engine.arrays import Complexes
-from engine.geometry import diameter
+from engine.geometry import as_xy, diameter, shapely_region
 
 SHARES = np.linspace(0.0, 1.0, 41)  # of a limb from its root
-BETWEEN = np.linspace(0.0, 1.0, 15)  # from one limb of a pair to the other
 NEAR_ROOT = 1.5  # power by which room grows as the crotch is nearer to the roots
 BESIDE = 0.01  # of the drawing's diameter: a joint this far outside moves to the outline
 
@@ -88,15 +88,15 @@ def find_rest_body(layer: Layer, order: MotionRequest) -> Body:
 
 def _find_crotch_rooms(layer: Layer, body: Body) -> dict[str, float]:
     """Return the room at the crotch of each pair of legs that are one above it."""
-    rooms = dict[str, float]()
+    rooms, region = dict[str, float](), shapely_region(layer.domain.outline, layer.domain.loops[1:])
     for foot in ("foot.L", "hand.L"):
         pair = foot, other_side(foot)
         if not all(name in body.joints for name in pair):
             continue
         one, other = (_along_limb(body, name) for name in pair)
-        between = one + BETWEEN[:, None] * (other - one)
-        inside = layer.domain.contains(between.ravel()).reshape(between.shape).all(axis=0)
-        crotch = int((~inside).argmax()) if not inside.all() else len(SHARES) - 1
+        ways = shapely.linestrings(np.stack([as_xy(one), as_xy(other)], axis=1))
+        is_one = shapely.covers(region, ways)
+        crotch = int((~is_one).argmax()) if not is_one.all() else len(SHARES) - 1
         if crotch > 0:
             room = float(abs(other[crotch] - one[crotch]) / SHARES[crotch] ** NEAR_ROOT)
             rooms |= dict.fromkeys(pair, room)

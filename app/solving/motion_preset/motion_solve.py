@@ -13,6 +13,7 @@ from app.document import (
     Pose,
     clip_of,
     is_motion_unedited,
+    layer_commands,
     measure_target_errors,
     rest_pose,
     scene_commands,
@@ -29,14 +30,16 @@ from app.solving.motion_preset.key_poses import (
     plan_performance,
     with_joint_weights,
 )
+from app.solving.motion_preset.limb_cuts import PARTED, find_limb_cuts, part_limbs
+from app.solving.motion_preset.misses import describe_misses
 from app.solving.motion_preset.motion_request import MotionRequest, find_rest_body
 from app.solving.motion_preset.splicing import count_blend_frames, splice_motion
 from app.texts import _
+from engine.arrays import Bytes
 
 # Largest number of steps; a pose that needs more moves slowly along a limit.
 MOST_STEPS = 150
 SIZE_TRIES = 4  # tries in the search for the largest reachable size
-MOST_NAMED = 3  # joints listed in a notice
 WORST = 4  # keys tested in the search
 SMALLEST = 0.05  # smallest size of parameters
 
@@ -60,6 +63,7 @@ class MotionSolve:
     # Bounds of the largest reachable size, and the number of tries.
     size_range: tuple[float, float]
     tries: int = 0
+    parted: bool = False  # whether limbs that touch in the drawing were parted
 
     @property
     def is_solved(self) -> bool:
@@ -92,27 +96,9 @@ class MotionSolve:
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """Notices about unreachable joints, and a reachable size."""
-        if not self.target_errors:
-            return ()
-        worst = sorted(self.target_errors.items(), key=lambda each: -each[1][0])
-        one = _("{joint!r} by {error:.1f} px (frame {frame})")
-        joints = ", ".join(
-            one.format(joint=name, error=error, frame=frame)
-            for name, (error, frame) in worst[:MOST_NAMED]
-        )
-        if worst[MOST_NAMED:]:
-            more = len(worst) - MOST_NAMED
-            joints = _("{names} and {count:,} more").format(names=joints, count=more)
-        size = self.reachable_size
-        if size is None:
-            return (_("Some joints miss their targets: {joints}").format(joints=joints),)
-        return (
-            _(
-                "Some joints miss their targets: {joints}. At size {size:.2f} every joint "
-                "reaches its target"
-            ).format(joints=joints, size=size),
-        )
+        """Notices about parted limbs, unreachable joints, and a reachable size."""
+        parted = [_(PARTED)] if self.parted else []
+        return (*parted, *describe_misses(self.target_errors, self.reachable_size))
 
     @property
     def posed_layer(self) -> Layer:
@@ -183,11 +169,19 @@ class MotionSolve:
     @property
     def command(self) -> Command:
         """The command that applies everything as one undo step."""
-        return scene_commands.apply_motion(self.posed_layer, self.applied)
+        apply = scene_commands.apply_motion(self.posed_layer, self.applied)
+        if not self.parted:
+            return apply
+        keep = layer_commands.keep_attachments(self.before.id)
+        return Command(apply.label, lambda document: keep(apply(document)))
 
 
-def start_motion_solve(document: Document, identity: int, order: MotionRequest) -> MotionSolve:
+def start_motion_solve(
+    document: Document, identity: int, order: MotionRequest, rgba: Bytes | None = None
+) -> MotionSolve:
     """Return the initial state of applying a motion preset; no key is solved yet.
+
+    With the picture `rgba`, limbs that touch in the drawing are parted first.
 
     Raises a `LissomError` or `EngineError` if the layer cannot be posed, a joint is not on it, or a
     needed joint is missing.
@@ -198,6 +192,10 @@ def start_motion_solve(document: Document, identity: int, order: MotionRequest) 
             _("{layer!r} cannot move, because it contains no shape.").format(layer=before.name)
         )
     body = find_rest_body(before, order)
+    cuts = None if rgba is None else find_limb_cuts(before, body, rgba)
+    if cuts is not None and rgba is not None:
+        document = part_limbs(document, identity, cuts, rgba)
+        body = find_rest_body(document.layer(identity), replace(order, joints=cuts.joints))
     document, joints = rig_body(document, identity, body, order.handles)
     into = document.layer(identity)
     lead_frames = count_blend_frames(before, order.first, document.fps)
@@ -230,6 +228,7 @@ def start_motion_solve(document: Document, identity: int, order: MotionRequest) 
         rig=Rig.of(with_joint_weights(into, frozenset(joints.values()), standing)),
         target_errors={},
         size_range=(0.0, order.parameters.size),
+        parted=cuts is not None,
     )
 
 

@@ -194,7 +194,7 @@ def test_a_line_parts_two_legs_of_one_silhouette():
     legs = track_legs(*joined_legs(has_line=True))
     assert [round(leg.foot.real / 10) for leg in legs] == [8, 12]
     for leg in legs:
-        assert leg.foot.imag < leg.knee.imag < leg.root.imag <= 150
+        assert leg.foot.imag < leg.knee.imag < leg.root.imag <= 180
     assert len(track_legs(*joined_legs(has_line=False))) < 2
 
 

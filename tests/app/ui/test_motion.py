@@ -4,11 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from overlapping_legs import draw_person
 from silhouettes import paint
 
 from app.document import find_motion_edits, is_motion_unedited
 from app.editor import pending_changes
 from app.editor.actions import editing, playback
+from app.editor.actions.layer_setup.cut_out_editing import remove_knife_cut
 from app.editor.actions.posing.handles import remove_handles, suggest_handles
 from app.editor.actions.posing.motion_presets import (
     apply_motion,
@@ -256,6 +258,41 @@ def test_rig_this_makes_handles_and_bones_in_one_step(window):
     names = {handle.id: handle.name for handle in layer.handles}
     bones = {tuple(names[end] for end in bone.ends) for bone in layer.bones}
     assert {("hip.L", "knee.L"), ("knee.L", "foot.L"), ("elbow.R", "hand.R")} <= bones
+    editing.undo(window.session)
+    assert project.document is before
+
+
+@pytest.mark.parametrize("how", ["rig", "apply"])
+def test_legs_that_touch_are_parted_in_the_same_step(window, tmp_path, how):
+    draw_person("lines").save(tmp_path / "person.png")
+    project = window.open(tmp_path / "person.png")
+    before = project.document
+    if how == "rig":
+        rigging.rig_layer(window.session)
+        window.until(lambda: not project.layer.is_stale)
+    else:
+        preset_setup.begin_motion_setup(window.session)
+        preset_setup.set_motion_parameters(window.session, size=0.3, speed=4.0)
+        apply_motion.apply_motion_preset(window.session)
+    arrive(window, project)
+    print(
+        [t.text for t in window.session.notices.toasts],
+        window.session.tools.mode,
+        project.layer.domain.mesh.triangles.shape,
+        len(project.layer.handles),
+    )
+    assert any("were parted" in toast.text for toast in window.session.notices.toasts)
+    layer = project.layer
+    assert layer.domain.closed is not None
+    assert len(layer.cut_out.cut_lines) == 1
+    assert {"hip.L", "knee.R"} <= {handle.name for handle in layer.handles}
+    if how == "apply":
+        playback.stop_playback(window.session)
+    remove_knife_cut(window.session, complex(layer.cut_out.cut_lines[0].points[50]), 3.0)
+    assert not project.layer.cut_out.cut_lines
+    window.until(lambda: not project.layer.is_stale)
+    assert project.layer.domain.closed is None
+    editing.undo(window.session)
     editing.undo(window.session)
     assert project.document is before
 

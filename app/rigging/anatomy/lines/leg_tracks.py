@@ -4,23 +4,25 @@ A silhouette joins legs that overlap. The lines of the drawing part them: each l
 leg in one run between its outlines, and runs that overlap from row to row make a track.
 """
 
-from bisect import bisect_right
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy import ndimage
 
-from app.rigging.anatomy.anatomy import bend_share
 from engine.arrays import Booleans, Bytes, Complexes, Floats
+from engine.geometry import distance_to_segments
 
 ROWS = 400  # of the raster: its longer side, at most twice as many
 # Largest width of a line as a share of the longer side, and its least contrast to what it parts.
 LINE, CONTRAST = 0.02, 0.2
+OPAQUE = 128.0  # least level of opacity of the drawing
+SOFT, SHARP = 1.0, 8.0  # changes of colour: blur in cells, least levels per cell
 LEAST_RUN = 0.01  # of the longer side
 WIDENED = 1.5  # factor over the width so far by which a run leaves its leg
-# Widths of a leg from the crotch up to its root; least share of a leg that moves.
-ABOVE, FREE = 0.4, 0.7
+# Widths of a leg from where its lines end up to its root.
+ABOVE = 0.4
+TALLER = 1.2  # factor by which legs between changes of colour are taller than between lines
 LEAST_ROWS = 4  # of a track that counts
 NEIGHBOUR = 0.5  # of a leg's height: its neighbour's foot is this near
 WINDOW = 12  # rows below, whose mean width that is
@@ -31,6 +33,7 @@ HEM = 0.35  # of the height: a line across a leg is at most so high
 SLIM = 1.4  # length over width of a leg, at least
 ANKLE = 1.1  # height of the ankle above the sole, in radii of the leg
 FOOT = 1.35  # width of a foot's rows over that of the leg
+BENT = 0.03  # of a leg's length: its middle line is farther from a straight line if its knee bends
 
 
 class TrackedLeg(NamedTuple):
@@ -47,10 +50,6 @@ class _Track(NamedTuple):
     rows: list[int]
     left: list[int]
     right: list[int]
-
-    def edge(self, edges: Sequence[int], row: int) -> int:
-        """Return one of the edges at a row, or at the next one below."""
-        return edges[bisect_right(self.rows, row) - 1]
 
     @property
     def widths(self) -> Floats:
@@ -78,10 +77,26 @@ def track_legs(loops: Sequence[Complexes], rgba: Bytes, corner: complex) -> tupl
         Its lower left corner.
     """
     factor = max(1, max(rgba.shape[:2]) // (2 * ROWS))
-    inside, parts = _parts_between_lines(loops, rgba, corner, factor)
+    inside, colours = _rasterize(loops, rgba, corner, factor)
+    found = _find_legs(inside & ~_mark_lines(inside, colours))
+    # Legs without outlines part where the colour changes.
+    others = _find_legs(inside & ~_mark_changes(inside, colours))
+    is_taller = _total_height(others) > TALLER * _total_height(found)
+    if len(others) >= max(2, len(found)) and is_taller:
+        found = others
+    placed = [TrackedLeg(*(corner + factor * (at + 0.5 + 0.5j) for at in leg)) for leg in found]
+    return tuple(sorted(placed, key=lambda leg: leg.foot.real))
+
+
+def _total_height(legs: Sequence[tuple[complex, complex, complex]]) -> float:
+    return sum(root.imag - foot.imag for root, _, foot in legs)
+
+
+def _find_legs(parts: Booleans) -> list[tuple[complex, complex, complex]]:
+    """Return root, knee and ankle of the legs in the raster."""
     rows = np.flatnonzero(parts.any(axis=1))
     if not len(rows):
-        return ()
+        return []
     ground, tall = int(rows[0]), int(rows[-1] - rows[0])
     tracks = [each for each in _follow_runs(parts) if len(each.rows) >= LEAST_ROWS]
     tracks.sort(key=lambda track: track.rows[0])
@@ -91,23 +106,20 @@ def track_legs(loops: Sequence[Complexes], rgba: Bytes, corner: complex) -> tupl
             break
         if number in joined:
             continue
-        joined |= _extend_upwards(track, tracks, ground + HEM * tall)
+        _extend_upwards(track, tracks, ground + HEM * tall, joined)
         width = float(np.median(track.widths))
         if track.rows[-1] - track.rows[0] >= max(SHORTEST * tall, SLIM * width):
             legs.append(track)
     highest = ground + HIGHEST * tall
     if min((track.rows[-1] for track in legs), default=highest) >= highest:
-        return ()
-    found = [_leg(track, _find_root(track, legs, inside, highest)) for track in legs]
-    placed = [TrackedLeg(*(corner + factor * (at + 0.5 + 0.5j) for at in leg)) for leg in found]
-    return tuple(sorted(placed, key=lambda leg: leg.foot.real))
+        return []
+    return [_leg(track, _find_root(track, legs, highest)) for track in legs]
 
 
-def _find_root(track: _Track, legs: Sequence[_Track], inside: Booleans, highest: float) -> float:
+def _find_root(track: _Track, legs: Sequence[_Track], highest: float) -> float:
     """Return the row at which a leg leaves the body.
 
-    A leg that is drawn over its neighbour can swing only below the crotch of the silhouette. A leg
-    in front whose lines lead on into the body ends at most where its neighbour does.
+    A leg in front whose lines lead on into the body ends at most where its neighbour does.
     """
     above = ABOVE * float(np.median(track.widths))
     top = min(track.rows[-1] + above, highest)
@@ -116,17 +128,7 @@ def _find_root(track: _Track, legs: Sequence[_Track], inside: Booleans, highest:
         tall = min(top, other.rows[-1]) - track.rows[0]
         if other is track or abs(away) > NEIGHBOUR * tall:
             continue
-        left, right = (track, other) if away > 0 else (other, track)
-        first = max(left.rows[0], right.rows[0])
-        last = min(left.rows[-1], right.rows[-1])
-        apart = [
-            row
-            for row in range(first, last)
-            if not inside[row, left.edge(left.right, row) : right.edge(right.left, row)].all()
-        ]
-        crotch = apart[-1] if apart else first
-        free = max(crotch + above, track.rows[0] + FREE * tall)
-        top = min(top, other.rows[-1] + above, free)
+        top = min(top, other.rows[-1] + above)
     return top
 
 
@@ -140,18 +142,27 @@ def _leg(track: _Track, root: float) -> tuple[complex, complex, complex]:
     way = middles[ankle : top + 1][::-1]
     beyond = root - track.rows[-1]
     if beyond > 0:
-        below = way[min(WINDOW, len(way) - 1)]
-        way = np.append(way[0] + beyond * (way[0] - below) / (way[0] - below).imag, way)
+        way = np.append(way[0] + 1j * beyond, way)
     lengths = np.append(0.0, np.cumsum(np.abs(np.diff(way))))
-    share = bend_share(way, lengths)
-    knee = int(np.abs(lengths - (0.5 if share is None else share) * lengths[-1]).argmin())
+    if _distance_from_bones(way, (0, -1)) < BENT * lengths[-1]:
+        knee = int(np.abs(lengths - lengths[-1] / 2).argmin())
+    else:
+        knee = min(
+            range(1, len(way) - 1), key=lambda each: _distance_from_bones(way, (0, each, -1))
+        )
     return complex(way[0]), complex(way[knee]), complex(way[-1])
 
 
-def _parts_between_lines(
+def _distance_from_bones(way: Complexes, joints: Sequence[int]) -> float:
+    """Return how far a limb's middle line is from straight bones between points of it."""
+    bends = way[[*joints]]
+    return float(distance_to_segments(way, bends[:-1], bends[1:]).max())
+
+
+def _rasterize(
     loops: Sequence[Complexes], rgba: Bytes, corner: complex, factor: int
-) -> tuple[Booleans, Booleans]:
-    """Return where the drawing is, and where it is and no line, in rows from the lower edge."""
+) -> tuple[Booleans, Floats]:
+    """Return where the drawing is, and its colours over white, in rows from the lower edge."""
     high, wide = (length // factor for length in rgba.shape[:2])
     inside = np.zeros((high, wide), dtype=bool)
     columns = (np.arange(wide) + 0.5) * factor + corner.real
@@ -160,12 +171,26 @@ def _parts_between_lines(
         crossings = np.sort(np.concatenate([_crossings(loop, y) for loop in loops]))
         inside[row] = np.searchsorted(crossings, columns) % 2 == 1
     lower = rgba.shape[0] - high * factor
-    cut = rgba[lower:, : wide * factor, :3].reshape(high, factor, wide, factor, 3)
-    brightness = cut.mean(axis=(1, 3, 4))[::-1]
-    brightness = np.where(inside, brightness, 255.0)
-    size = 2 * int(np.ceil(LINE * max(high, wide) / 2)) + 1
+    cut = rgba[lower:, : wide * factor].reshape(high, factor, wide, factor, 4)
+    means = cut.mean(axis=(1, 3))[::-1]
+    inside &= means[..., 3] >= OPAQUE
+    return inside, np.where(inside[..., None], means[..., :3], 255.0)
+
+
+def _mark_lines(inside: Booleans, colours: Floats) -> Booleans:
+    """Mark lines darker than the colour on both sides."""
+    brightness = colours.mean(axis=2)
+    size = 2 * int(np.ceil(LINE * max(inside.shape) / 2)) + 1
     around = ndimage.grey_closing(brightness, size=(size, size))
-    return inside, inside & (around - brightness <= CONTRAST * around)
+    is_line: Booleans = around - brightness > CONTRAST * around
+    return is_line
+
+
+def _mark_changes(inside: Booleans, colours: Floats) -> Booleans:
+    """Mark where the colour changes."""
+    change = [ndimage.gaussian_gradient_magnitude(colours[..., k], SOFT) for k in range(3)]
+    is_change: Booleans = inside & (np.max(change, axis=0) > SHARP)
+    return is_change
 
 
 def _crossings(loop: Complexes, height: float) -> Floats:
@@ -205,19 +230,20 @@ def _follow_runs(parts: Booleans) -> list[_Track]:
     return found
 
 
-def _extend_upwards(track: _Track, others: Sequence[_Track], highest: float) -> set[int]:
+def _extend_upwards(
+    track: _Track, others: Sequence[_Track], highest: float, joined: set[int]
+) -> None:
     """Add the tracks above a leg from which a line across it, as of a sock, parts it.
 
-    Return their numbers. Lines above a height bound the body.
+    Their numbers are added to those that are joined to a leg. Lines above a height bound the body.
     """
-    width, joined = float(np.median(track.widths)), set[int]()
+    width = float(np.median(track.widths))
     for number, other in enumerate(others):
         away = other.middles[0] - track.middles[-1]
         if not 0 < away.imag <= STITCH * width or abs(away.real) > STITCH * width / 2:
             continue
         is_alike = 1 / WIDENED <= float(np.median(other.widths)) / width <= WIDENED
-        if is_alike and track.rows[-1] <= highest:
+        if is_alike and track.rows[-1] <= highest and number not in joined:
             joined.add(number)
             for one, more in zip(track, other, strict=True):
                 one.extend(more)
-    return joined

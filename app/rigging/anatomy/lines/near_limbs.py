@@ -16,9 +16,9 @@ ROOT = 0.35  # of a limb from its root on: there the near limb's outline crosses
 INK = 0.5  # of the usual brightness: a line
 # Weights of the signs, each from -1 to 1: of lines across the root, of brightness, of feet that
 # stand lower in the picture, and of thickness.
-OVERLAP, SHADE, LOWER, THICK = 1.0, 2.0, 1.0, 0.5
+OVERLAP, SHADE, LOWER, THICK = 1.0, 2.0, 1.0, 1.5
 # Differences that count fully: of brightness (share), of feet in lengths of a leg, of thickness.
-SHADED, LOWERED, THICKER = 0.12, 0.04, 0.15
+SHADED, LOWERED, THICKER = 0.12, 0.04, 0.3
 SURE = 0.5  # of the sum of the signs
 
 

@@ -9,12 +9,20 @@ from app.rigging.motions.kinds import BodyKind, find_kind
 
 LEG = ("hip", "knee", "foot")
 FRONT_LEG = ("shoulder", "elbow", "hand")
+BESIDE = 0.6  # of a leg's length: the feet of one body are this near
 PELVIS = 0.22  # of a leg's length: height of the hips above the roots of both legs
 
 
 def find_kind_by_legs(kind: BodyKind, legs: Sequence[TrackedLeg]) -> BodyKind:
-    """Return the kind of a body that looks like a chain as long as its legs are taken for one."""
-    return find_kind("biped-side") if kind.name == "chain" and len(legs) == 2 else kind
+    """Return the kind of a body that stands on two legs beside each other, parted by lines only.
+
+    By its silhouette such a body looks like a chain, or like anything.
+    """
+    if kind.name not in ("chain", "anything") or len(legs) != 2:
+        return kind
+    one, other = legs
+    long = min(abs(leg.root - leg.foot) for leg in legs)
+    return find_kind("biped-side") if abs(one.foot - other.foot) < BESIDE * long else kind
 
 
 def with_tracked_legs(

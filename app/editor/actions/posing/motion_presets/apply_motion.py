@@ -17,7 +17,7 @@ from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.editor.work.motion_setup import MotionJob, MotionSetup
 from app.editor.work.pending_change import PendingChange
-from app.solving import MotionRequest, MotionSolve, start_motion_solve, step_motion_solve
+from app.solving import PARTED, MotionRequest, MotionSolve, start_motion_solve, step_motion_solve
 from app.texts import _, ngettext
 
 GIVING = JobKind(_("Applying the motion"), _("The motion was not applied"), "hand")
@@ -49,7 +49,8 @@ def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
     base = _without(project.document, draft)
     task = MotionJob(setup=draft, before=before, base=base)
     order = _motion_request(draft, before)
-    _step(session, project, task, partial(start_motion_solve, base, before.id, order))
+    rgba = project.runtimes.layers[before.id].picture.rgba
+    _step(session, project, task, partial(start_motion_solve, base, before.id, order, rgba))
 
 
 def _motion_request(draft: MotionSetup, before: Layer) -> MotionRequest:
@@ -143,6 +144,8 @@ def _accept(session: Session, project: Project, task: MotionJob, giving: MotionS
     unkeyed = project.history.preview_pose
     if unkeyed is not None and unkeyed.layer == before.id:
         project.history.set_preview_pose(None, gesture=gesture)
+    if giving.parted:
+        session.notices.show(_(PARTED))
     _show_unreached_joints(session, giving)
     if session.tools.active_tool is None:
         playback.scrub(session, giving.applied.first)

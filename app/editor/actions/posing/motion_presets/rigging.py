@@ -1,5 +1,7 @@
 """Rig a drawing in one step: handles, bones, sides, rigid ends and names."""
 
+from dataclasses import replace
+
 from app.document import Command, Document
 from app.editor.actions import playback
 from app.editor.actions.action_spec import named_action
@@ -7,7 +9,7 @@ from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.motion_setup import MotionSetup
-from app.solving import MotionRequest, find_rest_body, rig_body
+from app.solving import PARTED, MotionRequest, find_limb_cuts, find_rest_body, rig_body
 from app.texts import _, ngettext
 
 
@@ -46,9 +48,17 @@ def _rig(session: Session, project: Project, draft: MotionSetup) -> None:
         motion=draft.motion, kind=draft.kind, joints=draft.joints, facing=draft.facing
     )
     body = find_rest_body(layer, order)
+    cuts = find_limb_cuts(layer, body, project.runtimes.layers[layer.id].picture.rgba)
+    if cuts is not None:
+        body = replace(body, joints=cuts.joints)
 
     def rigged(document: Document) -> Document:
-        return rig_body(document, layer.id, body, {})[0]
+        made = rig_body(document, layer.id, body, {})[0]
+        if cuts is None:
+            return made
+        # The domain is rebuilt, and keys are solved again, as after each change of the cut-out.
+        parted = replace(made.layer(layer.id), cut_out=cuts.cut_out, is_stale=True)
+        return made.with_layer(parted)
 
     if session.tools.motion_setup is not None:
         preset_setup.close_motion_setup(session)
@@ -60,4 +70,5 @@ def _rig(session: Session, project: Project, draft: MotionSetup) -> None:
         "{layer} has a rig now: {count} bones more.",
         bones,
     )
-    session.notices.show(text.format(layer=made.name, count=bones))
+    text = text.format(layer=made.name, count=bones)
+    session.notices.show(text if cuts is None else f"{text} {_(PARTED)}")

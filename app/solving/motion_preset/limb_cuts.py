@@ -1,0 +1,112 @@
+"""Limbs that touch in the drawing, parted by knife lines along the near limb's line."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from app.cut_out import CutLine, CutOut, build_picture_domain
+from app.document import Document, Layer
+from app.rigging import Body, find_limb_line, near_side, other_side
+from app.solving.resolve_keys import KeyResolver, step_resolver
+from app.texts import N_
+from engine.arrays import Bytes, Complexes, Floats
+from engine.domain import CUT_WIDTH
+from engine.errors import EngineError
+from engine.geometry import box_diagonal, distance_to_segments
+
+PARTED = N_("The legs touch in the drawing: they were parted along the near leg's line.")
+BESIDE = 2.0  # widths of a slit: a handle nearer to a knife line may be inside the slit
+
+
+class LimbCuts(NamedTuple):
+    """The cut-out of a layer with knife lines between limbs, and the joints beside the lines."""
+
+    cut_out: CutOut
+    joints: Mapping[str, complex]
+
+
+def find_limb_cuts(layer: Layer, body: Body, rgba: Bytes) -> LimbCuts | None:
+    """Return how the limbs of an undeformed body are parted; None if no line between them is found.
+
+    No line passes through a handle, and each line leaves a domain.
+    """
+    lines = [
+        line
+        for near, far in _pairs(body)
+        if (line := find_limb_line(layer.domain.loops, near, far, rgba, layer.corner)) is not None
+    ]
+    width = CUT_WIDTH * box_diagonal(layer.domain.outline)
+    handles = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
+    free = [line for line in lines if (_distances(handles, line) > BESIDE * width).all()]
+    for count in range(len(free), 0, -1):
+        for some in combinations(free, count):
+            drawn = tuple(CutLine(points=line - layer.corner) for line in some)
+            cut_out = replace(layer.cut_out, cut_lines=(*layer.cut_out.cut_lines, *drawn))
+            if _is_possible(layer, cut_out, rgba):
+                return LimbCuts(cut_out, _beside(body.joints, some, BESIDE * width))
+    return None
+
+
+def part_limbs(document: Document, identity: int, cuts: LimbCuts, rgba: Bytes) -> Document:
+    """Return a document with a layer's limbs parted: its domain built, and its poses solved again.
+
+    Raises an `EngineError` if the domain does not contain a handle.
+    """
+    layer = replace(document.layer(identity), cut_out=cuts.cut_out, is_stale=True)
+    resolver = KeyResolver(before=layer, bounds=layer.bounds, meshing=layer.meshing)
+    while not resolver.is_over or resolver.new_layer is None:
+        resolver = step_resolver(resolver, rgba)
+    return resolver.command(document.with_layer(layer))
+
+
+def _pairs(body: Body) -> list[tuple[list[complex], list[complex]]]:
+    """Return the near and the far limb of each pair, by their joints from root to end."""
+    ends = ("foot", "hand") if body.kind.name == "four-legs" else ("foot",)
+    pairs = []
+    for end in ends:
+        near = f"{end}.{near_side(body.facing)}"
+        if near not in body.joints or other_side(near) not in body.joints:
+            continue
+        limbs = [body.limb_joints(tip) for tip in (near, other_side(near))]
+        if min(map(len, limbs)) > 1:
+            one, other = ([body.joints[name] for name in limb] for limb in limbs)
+            pairs.append((one, other))
+    return pairs
+
+
+def _is_possible(layer: Layer, cut_out: CutOut, rgba: Bytes) -> bool:
+    """Return whether the cut-out leaves a domain that contains the handles and the anchor."""
+    try:
+        domain, _ = build_picture_domain(
+            rgba,
+            triangles=layer.meshing.triangles,
+            detail=layer.meshing.detail,
+            cut_out=cut_out,
+        )
+    except EngineError:
+        return False
+    places = [handle.position for handle in layer.handles]
+    if layer.anchor is not None:
+        places.append(layer.anchor)
+    return bool(domain.moved(layer.corner).contains(np.array(places, np.complex128)).all())
+
+
+def _distances(points: Complexes, line: Complexes) -> Floats:
+    return np.asarray(distance_to_segments(points, line[:-1], line[1:]))
+
+
+def _beside(
+    joints: Mapping[str, complex], lines: tuple[Complexes, ...], least: float
+) -> dict[str, complex]:
+    """Return the joints, those closer to a line than a distance moved away from it."""
+    moved = dict(joints)
+    for name, place in joints.items():
+        for line in lines:
+            nearest = line[np.abs(line - place).argmin()]
+            away = place - nearest
+            if 0 < abs(away) < least:
+                moved[name] = complex(nearest + least * away / abs(away))
+    return moved

@@ -1,0 +1,54 @@
+"""The line between two limbs that overlap in a drawing."""
+
+import numpy as np
+import pytest
+import shapely
+from overlapping_legs import FAR_LEG, JOINTS, NEAR_LEG, draw_person, limb, rgba_of
+
+from app.cut_out import build_picture_domain
+from app.rigging import find_limb_line
+from engine.geometry import as_xy
+
+LIMBS = [[JOINTS[f"{name}.{side}"] for name in ("hip", "knee", "foot")] for side in "RL"]
+
+
+def line_of(style, limbs=LIMBS, *, corner=0j):
+    rgba = rgba_of(draw_person(style))
+    domain, _ = build_picture_domain(rgba, triangles=1000, detail="normal")
+    moved = [np.array(each) + corner for each in limbs]
+    return find_limb_line(domain.moved(corner).loops, *moved, rgba, corner), domain
+
+
+@pytest.mark.parametrize(("style", "ink"), [("lines", 2.0), ("flat", 0.0)])
+def test_line_follows_the_near_leg_outside_its_ink_when_legs_overlap(style, ink):
+    line, domain = line_of(style)
+    assert line is not None
+    near, far = limb(*NEAR_LEG).buffer(ink), limb(*FAR_LEG).buffer(ink)
+    points = shapely.points(as_xy(line))
+    # Where the far leg is on both sides of the near leg's edge.
+    on_far = shapely.contains(far.buffer(-3), points)
+    assert np.ptp(line[on_far].imag) > 80
+    assert shapely.distance(near.exterior, points[on_far]).max() < 4
+    assert shapely.distance(near.exterior, points[on_far]).mean() < 1.5
+    assert line[-1].imag > 215
+    # It begins where the legs are apart, so that the knife parts them.
+    assert not domain.contains(line[:1]).any()
+
+
+def test_line_is_the_same_wherever_the_picture_lies():
+    line, _ = line_of("lines")
+    moved, _ = line_of("lines", corner=40 - 25j)
+    assert line is not None
+    assert moved is not None
+    np.testing.assert_allclose(moved - (40 - 25j), line, atol=1e-6)
+
+
+def test_line_stays_in_the_gap_when_nothing_tells_the_legs_apart():
+    line, _ = line_of("plain")
+    legs = shapely.union(limb(*NEAR_LEG), limb(*FAR_LEG)).buffer(-8)
+    assert line is None or not shapely.contains(legs, shapely.points(as_xy(line))).any()
+
+
+def test_no_line_is_found_when_the_legs_are_apart():
+    away = [[at - 160 for at in LIMBS[0]], LIMBS[1]]
+    assert line_of("lines", [away[1], [at + 500 for at in away[1]]])[0] is None
