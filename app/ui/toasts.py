@@ -47,10 +47,7 @@ class ToastStack:
         flags = _FLAGS if is_on_button else _FLAGS | imgui.WindowFlags_.no_mouse_inputs
         imgui.push_style_var(imgui.StyleVar_.alpha, _opacity(now - since))
         _place_toast(session, look, front, flags)
-        actions = _contents(front, look, self._buttons)
-        if len(toasts) > 1:
-            text = ngettext("{count} more message", "{count} more messages", len(toasts) - 1)
-            small_text(look, text.format(count=len(toasts) - 1))
+        actions = _contents(front, look, self._buttons, others=len(toasts) - 1)
         low = imgui.get_window_pos()
         is_hovered = imgui.is_mouse_hovering_rect(low, low + imgui.get_window_size(), clip=False)
         _stripe(front, look)
@@ -120,8 +117,10 @@ _FLAGS = (
 )
 
 
-def _contents(toast: Toast, look: Look, buttons: list[imgui.internal.ImRect]) -> list[Action]:
-    """Draw a message, and note the places of its buttons. Return its actions."""
+def _contents(
+    toast: Toast, look: Look, buttons: list[imgui.internal.ImRect], *, others: int
+) -> list[Action]:
+    """Draw a message and the number of others; note its buttons' places. Return its actions."""
     actions = []
 
     def note(*, is_pressed: bool) -> bool:
@@ -145,6 +144,9 @@ def _contents(toast: Toast, look: Look, buttons: list[imgui.internal.ImRect]) ->
             imgui.same_line()
         if note(is_pressed=imgui.small_button(toast.label)):
             actions += [toast.action, do(dismiss_toast, toast)]
+    if others:
+        text = ngettext("{count} more message", "{count} more messages", others)
+        small_text(look, text.format(count=others))
     imgui.end_group()
     imgui.set_cursor_pos(ImVec2(imgui.get_window_width() - 2.1 * look.em, 0.35 * look.em))
     imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))

@@ -6,6 +6,7 @@ A key acts by the character that it types, as well as by its place on the keyboa
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import chain
 
 from imgui_bundle import imgui
 
@@ -17,6 +18,7 @@ from app.editor.tools.transform_tools.handle_box_tool import change_handles_by_k
 from app.editor.tools.transform_tools.layer_box_tool import change_layer_by_key
 from app.ui.shortcuts.keys import CTRL, PRESSED_KEYS, SIGNS, chords_of
 from app.ui.shortcuts.table import ACTIONS, ENDED_BY_ESC
+from app.ui.shortcuts.tap_counter import TapCounter
 
 Key = imgui.Key
 MODIFIERS = int(imgui.Key.mod_mask_)
@@ -26,22 +28,27 @@ PLUS = int(Key.equal)  # the key of + on English keyboards
 
 
 def collect_key_actions(
-    session: Session, plus_key: Callable[[], Key | None] = lambda: None
+    session: Session, taps: TapCounter, plus_key: Callable[[], Key | None] = lambda: None
 ) -> list[Action]:
     """Return the actions whose keys were pressed, unless the person types into a field.
 
     `plus_key` returns the key that types +, if it is not the one of English keyboards.
     """
-    if session.dialogs.current is not None:
-        return []
-    if _close_menu() or imgui.get_io().want_text_input:
+    io, is_elsewhere = imgui.get_io(), session.dialogs.current is not None or _close_menu()
+    # Dear ImGui's own focus moves by one item with each tap.
+    is_in_menu = imgui.get_current_context().open_popup_stack.size() or io.nav_visible
+    taps.is_on = not (is_elsewhere or is_in_menu or io.want_text_input)
+    if taps.is_waiting:
+        taps.read_frame()
+    if is_elsewhere or io.want_text_input:
         return []
     # First, because copy and select depend on the focus.
     actions = _follow_focus(session)
     typed = _typed_signs()
     if typed or [key for key in PRESSED_KEYS if imgui.is_key_down(key)]:
         # Arrow keys that move something do not also go to a key.
-        actions += _nudges(session) or _press_shortcuts(session, typed, plus_key())
+        nudges = _nudges(session, taps)
+        actions += nudges or _press_shortcuts(session, taps, typed, plus_key())
     return [replace(action, is_by_key=True) for action in actions + _space(session)]
 
 
@@ -52,14 +59,16 @@ def _typed_signs() -> set[int]:
     return {key for key in keys if not imgui.is_key_down(Key(key))}
 
 
-def _press_shortcuts(session: Session, typed: set[int], plus: Key | None) -> list[Action]:
+def _press_shortcuts(
+    session: Session, taps: TapCounter, typed: set[int], plus: Key | None
+) -> list[Action]:
     """Return the actions of pressed shortcuts: of each key the first that is possible.
 
     `typed` are keys whose signs other keys have typed; `plus` is the key that types +.
 
     If none is possible, a notice says why. Esc says nothing, since it belongs to many actions.
     """
-    project, pressed, reasons = session.project, dict[int, Action](), dict[int, str]()
+    project, pressed, reasons = session.project, dict[int, list[Action]](), dict[int, str]()
     is_dragging = session.tools.active_tool is not None or (
         project is not None and project.timeline.gesture is not None
     )
@@ -77,11 +86,12 @@ def _press_shortcuts(session: Session, typed: set[int], plus: Key | None) -> lis
                 continue
             reason = spec.disabled_reason(session)
             if reason is None:
-                pressed[key] = spec.action
+                times = taps.times(key & ~MODIFIERS) if spec.repeats_while_held else 1
+                pressed[key] = [spec.action] * times
             elif key != Key.escape:
                 reasons[key] = reason
     answers = [do(dialog_actions.show_notice, reason) for reason in reasons.values()]
-    return [*pressed.values(), *answers]
+    return [*chain.from_iterable(pressed.values()), *answers]
 
 
 def _follow_focus(session: Session) -> list[Action]:
@@ -118,7 +128,7 @@ def _close_menu() -> bool:
     return True
 
 
-def _nudges(session: Session) -> list[Action]:
+def _nudges(session: Session, taps: TapCounter) -> list[Action]:
     is_moving = session.tools.mode == "move"
     # While cutting out, handles are hidden.
     if session.project is None or session.tools.is_cutting:
@@ -126,7 +136,7 @@ def _nudges(session: Session) -> list[Action]:
     if not (is_moving or session.project.selection.handles):
         return []
     io = imgui.get_io()
-    pressed = [way for key, way in ARROWS.items() if imgui.is_key_pressed(key)]
+    pressed = [way * taps.times(key) for key, way in ARROWS.items() if imgui.is_key_pressed(key)]
     if io.key_ctrl:
         change = change_layer_by_key if is_moving else change_handles_by_key
         times = 10.0 if io.key_shift else 1.0

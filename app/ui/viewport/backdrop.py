@@ -64,9 +64,8 @@ def make_backdrop(backdrop: str, palette: Palette, edge: Floats, scale: float) -
         return Backdrop(colour=to_rgba(rgb(backdrop)))
     own, *others = sorted(PALETTES.values(), key=lambda other: other is not palette)
     checkers = [(own.paper, own.check), GREY, *((each.paper, each.check) for each in others)]
-    lost = [_lost(edge, paper) for paper, _check in checkers]
-    found = 0 if lost[0] <= MUCH else min(range(len(lost)), key=lambda index: round(lost[index], 1))
-    paper, check = map(to_rgba, checkers[found])
+    visible = (each for each in checkers if _lost(edge, each[0]) <= MUCH)
+    paper, check = map(to_rgba, next(visible, checkers[0]))
     return Backdrop(colour=paper, checks=check, square=SQUARE * scale)
 
 

@@ -37,6 +37,7 @@ from app.ui.viewport.split_view import SplitTextures
 from app.ui.window.desktop import NAME, name_application, show_icon, window_title
 from app.ui.window.events.drag_and_drop import accept_files
 from app.ui.window.events.input_queue import InputQueue
+from app.ui.window.events.key_taps import count_taps
 from app.ui.window.events.keyboard_layout import find_plus_key
 from app.ui.window.events.modifiers import release_stuck_modifiers
 from app.ui.window.exporter import Exporter
@@ -67,9 +68,8 @@ class Window:
         self._memory = FreeMemory(session)
         self._draw_step = FrameStep(self._paint, self._report_drawing_error)
         self._input_queue = InputQueue()
-        self._title = NAME
-        self._is_open = False
-        self._dropped: object = None
+        self._title, self._is_open = NAME, False
+        self._callbacks: object = None
 
     def runner_params(self) -> hello_imgui.RunnerParams:
         params = self.shell.runner_params()
@@ -112,7 +112,7 @@ class Window:
         params.app_window_params.window_title = self._title
         calls = params.callbacks
         self.shell.follow_layout(find_plus_key)
-        calls.enqueue_post_init(self._accept_files)
+        calls.enqueue_post_init(self._listen)
         calls.enqueue_post_init(show_icon)
         calls.pre_new_frame = hello_imgui.sequence_functions(self._rename, calls.pre_new_frame)
         calls.pre_new_frame = hello_imgui.sequence_functions(
@@ -251,9 +251,10 @@ class Window:
         self.thumbnails = Thumbnails(renderer.programs.context)
         self._layer_pictures = LayerPictures(renderer.programs.context)
 
-    def _accept_files(self) -> None:
+    def _listen(self) -> None:
         window = glfw_utils.glfw_window_hello_imgui()
-        self._dropped = accept_files(window, self.take_dropped)
+        dropped = accept_files(window, self.take_dropped)
+        self._callbacks = dropped, count_taps(window, self.shell.taps)
 
     def take_dropped(self, paths: list[Path]) -> None:
         """Open the dropped files, or add them to the open project."""

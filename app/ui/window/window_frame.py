@@ -36,6 +36,7 @@ from app.ui.panels.modes.bar import draw_mode_bar
 from app.ui.shortcuts.key_input import collect_key_actions
 from app.ui.shortcuts.keys import KEY_MAP
 from app.ui.shortcuts.table import MENUS
+from app.ui.shortcuts.tap_counter import TapCounter
 from app.ui.style.theme import Look, interface_scale
 from app.ui.toasts import ToastStack
 from app.ui.window.action_queue import ActionQueue
@@ -67,11 +68,10 @@ class WindowFrame:
         # Rectangles of items in this frame, and in the frame before.
         self._places: dict[str, tuple[ImVec2, ImVec2]] = {}
         self._seen: dict[str, tuple[ImVec2, ImVec2]] = {}
-        self._actions: list[Action] = []
-        self._asked: list[Action] = []
+        self._actions, self._asked = list[Action](), list[Action]()
         self.queue = ActionQueue(session, self._report_error)
         self._plus_key: Callable[[], imgui.Key | None] = lambda: None
-        self._pace = FramePace()
+        self.taps, self._pace = TapCounter(), FramePace()
         previews = welcome.Previews(thumbnail, moments)
         over = (
             # Hello ImGui draws the tabs themselves.
@@ -218,7 +218,7 @@ class WindowFrame:
         if self.queue.waiting and imgui.is_key_pressed(imgui.Key.escape):
             stop_finishing_pose(self.session)
         else:
-            self._actions += collect_key_actions(self.session, self._plus_key)
+            self._actions += collect_key_actions(self.session, self.taps, self._plus_key)
 
     def _begin_frame(self) -> None:
         session, project = self.session, self.session.project

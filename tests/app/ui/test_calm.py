@@ -115,3 +115,24 @@ def test_clicks_beside_the_buttons_of_a_message_go_to_the_drawing(window):
     window.run(close)
     window.frames(2)
     assert not window.session.notices.toasts
+
+
+def test_the_number_of_other_messages_lies_below_the_message(window, monkeypatch):
+    lines = {}
+
+    def watch(name):
+        draw = getattr(imgui, name)
+
+        def see(*arguments):
+            draw(*arguments)
+            lines[arguments[-1]] = imgui.get_item_rect_min().y, imgui.get_item_rect_max().y
+
+        monkeypatch.setattr(imgui, name, see)
+
+    watch("text_unformatted")
+    watch("text_colored")
+    long = "A message that is so long that it takes several lines below each other in its window."
+    window.session.notices.show("The first message.")
+    window.session.notices.show(long)
+    window.frames(3)
+    assert lines["1 more message"][0] >= lines[long][1]

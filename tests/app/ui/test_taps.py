@@ -12,7 +12,7 @@ import pytest
 from bars import BENT
 from imgui_bundle import ImVec2, imgui
 
-from app.editor.actions import playback
+from app.editor.actions import editing, playback
 from tests.campaigns.taps import tapped
 
 LEFT = 0
@@ -125,3 +125,59 @@ def test_keys_and_taps_come_in_turn(window, bent, ruler):
 )
 def test_a_real_window_takes_all_of_them():
     assert tapped(np.random.default_rng(0), 4)["taps"] == 4
+
+
+class Keyboard:
+    """A keyboard that counts taps as the real window does."""
+
+    def __init__(self, window):
+        self.taps = window.program.shell.taps
+
+    def tap(self, key, times=1):
+        for down in (True, False) * times:
+            waiting = imgui.get_current_context().input_events_queue.size()
+            if not self.taps.drops(key, is_down=down, waiting=waiting):
+                turn(key, down=down)
+
+
+def test_taps_of_a_stepping_key_within_a_picture_are_one_move(window, bent):
+    """A held key that a remote desktop sends as taps goes on no longer than the hand holds it."""
+    keyboard = Keyboard(window)
+    playback.scrub(window.session, 0)
+    window.frames(2)
+    keyboard.tap(imgui.Key.page_down, 9)
+    assert until_all_is_taken(window) == [9, 9]
+    keyboard.tap(imgui.Key.page_down, 4)
+    keyboard.tap(imgui.Key.page_up, 2)
+    keyboard.tap(imgui.Key.page_down)
+    shown = until_all_is_taken(window)
+    assert [now for last, now in pairwise([9, *shown]) if now != last] == [13, 11, 12]
+    window.frames(2)
+    # A tap that comes while the last release waits is another one.
+    keyboard.tap(imgui.Key.page_down)
+    window.frames(1)
+    keyboard.tap(imgui.Key.page_down, 3)
+    until_all_is_taken(window)
+    assert playback.current_frame(window.session, bent) == 16
+
+
+def test_arrows_nudge_as_far_as_they_are_tapped(window, bent):
+    keyboard, (handle, *_) = Keyboard(window), bent.layer.handles
+    window.act(editing.select_handles, frozenset({handle.id}))
+    window.frames(2)
+    start = bent.layer.keys[-1].pose.targets[handle.id].position
+    steps = bent.history.position
+    keyboard.tap(imgui.Key.up_arrow, 5)
+    until_all_is_taken(window)
+    window.settle()
+    assert bent.layer.keys[-1].pose.targets[handle.id].position == pytest.approx(start + 5j)
+    assert bent.history.position == steps + 1
+
+
+def test_no_tap_is_counted_while_a_field_has_the_keys(window, bent):
+    del bent
+    window.program.shell.taps.is_on = False
+    keyboard = Keyboard(window)
+    keyboard.tap(imgui.Key.left_arrow, 3)
+    assert imgui.get_current_context().input_events_queue.size() == 6
+    until_all_is_taken(window)

@@ -286,10 +286,14 @@ def _next_step(path: Path, runtimes: Sequence[LayerRuntime]) -> NextStep | None:
             action=do(cut_out_editing.toggle_cut_brush),
         )
     if cut.holes is not None and cut.holes.shut:
+        text = _("Does the background show through inside the drawing? Click there to cut a hole.")
+        if cut.background_like is not None:
+            text = _(
+                "Parts inside have the background's colour, as eyes do, and stayed. Click those "
+                "that belong to the background."
+            )
         return NextStep(
-            text=_(
-                "Does the background show through inside the drawing? Click there to cut a hole."
-            ),
+            text=text,
             label=_("Show holes"),
             action=do(cut_out_editing.toggle_cut_tool, "holes"),
         )
