@@ -75,6 +75,14 @@ def test_a_foot_begins_at_its_ankle():
     assert find_end_part(loops, 206 + 150j, 200 + 52j, [260 + 30j]) is None
 
 
+def test_a_hoof_is_a_rigid_end_and_a_round_tip_is_none():
+    round_tip = 20 * np.exp(1j * np.linspace(np.pi, 2 * np.pi, 33)) + 20j
+    hoof = np.array([-22, -24j, 24 - 24j]) + 20j
+    for end, is_rigid in ((round_tip, False), (hoof, True)):
+        loop = np.concatenate([end, [20 + 220j, -20 + 220j]])
+        assert (find_end_part([loop], 120j, 20j) is not None) == is_rigid
+
+
 def test_a_planted_sole_neither_rolls_nor_slides():
     document, layer = posed({"frame": 0}, HIPS_DOWN)
     assert placed(layer).angles == pytest.approx({3: 0.0}, abs=1e-3)

@@ -120,3 +120,23 @@ def test_an_end_with_an_angle_keeps_the_whole_turns_of_its_body():
     turn = np.vdot(foot - foot.mean(), half[-3:] - half[-3:].mean())
     expected = weights(0.5) @ np.array([0.5, 0.9 + 2 * np.pi, 1.5 + 2 * np.pi])
     assert_allclose(turn / abs(turn), np.exp(1j * expected), atol=1e-9)
+
+
+def test_a_pinned_end_turns_between_its_own_keyframes_only():
+    """A foot that stands in one segment and rolls in the next does not roll before."""
+    foot = np.array([2.0, 2.3, 2.3 + 0.2j])
+    at = [
+        np.concatenate([posed(0.2, 0.4), np.exp(1j * turn) * (foot - 2) + posed(0.2, 0.4)[-1]])
+        for turn in (0.5, 0.5, 1.5)
+    ]
+    known = SegmentBones(
+        rest=[*REST, foot],
+        places=np.array(at),
+        chains=[CHAIN._replace(end_part=3, has_own_angle=True)],
+        revolutions=(0, 0),
+        time_weights=TimeWeights.between(1.0, Tangent(InteriorKnot(1.0, 1.0), 1.0, 1.0)),
+    )
+    for pinned, rolls in (({7: at[0][-3]}, False), ({}, True)):
+        end = known.wanted(0.5, at[0], pinned)[-3:]
+        turned = np.angle(np.vdot(foot - foot.mean(), end - end.mean())) - 0.5
+        assert (abs(turned) > 0.01) == rolls

@@ -8,8 +8,9 @@ through them at one velocity where the base does. The body moves as in the base.
 chain of two bones is pinned, both bones turn further to bring it there.
 
 A foot, a hand or a head is one more part at the end of a chain, and moves like a bone. With an
-angle of its own, or pinned, its angle in the drawing's axes is blended instead, and a pinned one
-goes from place to place by 3t² − 2t³, or evenly on ground that moves.
+angle of its own its angle in the drawing's axes is blended instead. A pinned one goes from place to
+place, and from angle to angle, by 3t² − 2t³, or evenly on ground that moves: a foot that stands
+does not begin to roll because it rolls after the next keyframe.
 """
 
 from cmath import exp, phase
@@ -150,15 +151,17 @@ class SegmentBones:
         for chain in self.chains:
             motions = self._blended(chain, time, parts[chain.parent])
             goal = pinned.get(chain.end)
+            share = time if chain.end in even else time * time * (3 - 2 * time)
             if goal is not None and chain.end_part is not None:
-                share = time if chain.end in even else time * time * (3 - 2 * time)
                 goal = self._pinned_place(chain, share)
             if goal is not None and len(motions) == 2:
                 lack = self._end_lack(chain, time, motions[-1])
                 motions = _brought_to(chain, motions, goal - lack)
             parts |= zip(chain.parts, motions, strict=True)
             if chain.end_part is not None:
-                parts[chain.end_part] = self._end(chain, time, motions[-1], goal)
+                is_pinned = goal is not None
+                end = self._end(chain, time, motions[-1], share if is_pinned else None)
+                parts[chain.end_part] = end if goal is None else end._replace(place=goal)
         # The body's points are where they are.
         wanted = [places[: len(self.rest[0])]]
         for number, rest in enumerate(self.rest[1:], 1):
@@ -192,19 +195,22 @@ class SegmentBones:
         return RigidPart(joint, before.at(joint) + gap, turn, lack)
 
     def _end(
-        self, chain: ChainOfBones, time: float, before: RigidPart, goal: complex | None
+        self, chain: ChainOfBones, time: float, before: RigidPart, share: float | None
     ) -> RigidPart:
-        """Return the motion of the rigid part at a chain's end, pinned to a goal."""
+        """Return the motion of the rigid part at a chain's end, at a share of its way if pinned."""
         own, joint = chain.end_part or 0, chain.joints[-1]
         end = self._blended_part(own, chain.parts[-1], joint, time, before)
-        if chain.has_own_angle or goal is not None:
+        if chain.has_own_angle or share is not None:
             numbers = (0, *self._parts_to_end(chain), own)
             swept = self._body_turns + sum(
                 self._relative_turns(*pair) for pair in zip(numbers[1:], numbers, strict=False)
             )
-            turn = exp(1j * float(self.time_weights(time) @ swept))
-            end = end._replace(turn=self.at_ends[0][own].turn * turn)
-        return end if goal is None else end._replace(place=goal)
+            first = self.time_weights.first
+            turn = float(
+                self.time_weights(time) @ swept if share is None else share * swept[first + 1]
+            )
+            end = end._replace(turn=self.at_ends[0][own].turn * exp(1j * turn))
+        return end
 
     def _pinned_place(self, chain: ChainOfBones, share: float) -> complex:
         """Return the place of a pinned rigid part after a share of its way."""
