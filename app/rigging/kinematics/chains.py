@@ -1,8 +1,9 @@
 """Inverse kinematics of a chain of bones: its joints from its root and the goal of its end.
 
 A chain of two bones has two solutions, on either side of the way from root to goal; the side is
-given. A chain of more bones has many: the nearest to its present joints is found by FABRIK
-(Aristidou and Lasenby 2011). Beyond reach a chain is straight, and its end stays on the circle.
+given. A chain of more bones has many: the one whose bends change least is taken, so that all joints
+share a bend, and clearly bent ones keep their side. Beyond reach a chain is straight, and its end
+stays on the circle.
 Nearer than its bones can fold, its end stays on the circle of the sharpest fold.
 """
 
@@ -11,9 +12,18 @@ import math
 from collections.abc import Sequence
 from itertools import accumulate
 
+import numpy as np
+
+from engine.arrays import Booleans, Complexes, Floats
+
 # Bend of a joint beyond which a chain does not fold, in radians.
 SHARPEST_BEND = math.radians(150)
-SWEEPS = 60  # of FABRIK
+CLEARLY_BENT = math.radians(20)  # joints that bend by more keep their side
+STRIDE = 0.3  # radians: largest change of a bend in a step
+SWEEPS = 25  # steps at the goal
+SETTLED = 1e-7  # radians
+LEAST_CURVATURE = 0.2
+MISSED = 1e-6  # of the chain's length
 HALVINGS = 60  # in the search for an even bend
 TOLERANCE = 1e-10  # of the chain's length
 # A chain whose joints bend by less counts as straight: its sides are the given ones.
@@ -43,7 +53,9 @@ def solve_chain(
     triples = zip(places, places[1:], places[2:], strict=False)
     is_bent = any(bend_side(*triple) for triple in triples)
     if is_bent and abs(goal - root) < (1 - TOLERANCE) * sum(lengths):
-        return _fabrik(root, lengths, goal, start)
+        found = _least_changed(root, lengths, goal, start)
+        if found is not None:
+            return found
     return _evenly_bent(root, lengths, goal, side)
 
 
@@ -109,21 +121,82 @@ def _with_bend(lengths: Sequence[float], bend: float) -> list[complex]:
     return list(accumulate(ways))
 
 
-def _fabrik(
+def _least_changed(
     root: complex, lengths: Sequence[float], goal: complex, start: Sequence[complex]
-) -> list[complex]:
-    places = [root, *start]
-    for _ in range(SWEEPS):
-        if abs(places[-1] - goal) <= TOLERANCE * sum(lengths):
+) -> list[complex] | None:
+    """Return the joints of the chain whose bends change least, or None if it misses the goal.
+
+    Joints that are clearly bent keep their side, if the goal can be reached so. The end goes from
+    its place to the goal around the root, by steps of Newton's method for the least squares.
+    """
+    ways = np.diff(np.array([root, *start]))
+    bends = np.angle(ways / np.array([1.0, *ways[:-1]]))
+    most = np.maximum(np.abs(bends), SHARPEST_BEND)
+    most[0] = np.inf
+    keeps = np.abs(bends) > CLEARLY_BENT
+    keeps[0] = False
+    ranges = np.where(keeps & (bends > 0), 0.0, -most), np.where(keeps & (bends < 0), 0.0, most)
+    spans = np.asarray(lengths, np.float64)
+    for low, high in (ranges, (np.full(len(bends), -np.inf), np.full(len(bends), np.inf))):
+        found = _follow(bends, spans, goal - root, low, high)
+        places = np.cumsum(spans * np.exp(1j * np.cumsum(found)))
+        if abs(places[-1] - (goal - root)) <= MISSED * spans.sum():
+            return [root + complex(place) for place in places]
+    return None
+
+
+def _follow(drawn: Floats, lengths: Floats, goal: complex, low: Floats, high: Floats) -> Floats:
+    """Return the bends (n,), nearest to the drawn ones, that bring a chain's end to a goal.
+
+    The first bend is the first bone's direction. All stay between `low` and `high`.
+    """
+    bends, tiny = drawn.copy(), TOLERANCE * lengths.sum()
+    here = complex(np.sum(lengths * np.exp(1j * np.cumsum(drawn))))
+    way = cmath.log(goal / here) if abs(here) > tiny < abs(goal) else 0j
+    steps = 1 + math.ceil(abs(way) / STRIDE)
+    for step in range(1, steps + 1):
+        target = here * cmath.exp(way * (step / steps)) if step < steps else goal
+        for _ in range(SWEEPS if step == steps else 1):
+            reached = np.cumsum(lengths * np.exp(1j * np.cumsum(bends)))
+            arms = reached[-1] - np.concatenate([[0], reached[:-1]])
+            miss = target - complex(reached[-1])
+            change = _change(arms, bends - drawn, miss, bends <= low, bends >= high)
+            size = float(np.abs(change).max())
+            bends = np.clip(bends + change * min(1.0, STRIDE / (size or 1.0)), low, high)
+            if size < SETTLED and abs(miss) < tiny:
+                break
+    return bends
+
+
+def _change(
+    arms: Complexes, bent: Floats, miss: complex, is_low: Booleans, is_high: Booleans
+) -> Floats:
+    """Return a step of Newton's method for the smallest |bent|² whose end is moved by `miss`.
+
+    `arms` are the ways from the joints to the end. Bends at an end of their range do not leave it.
+    """
+    free = np.arange(len(arms))
+    while True:
+        own, here = arms[free], bent[free]
+        # The end moves by i a for each bend of a joint, and two bends turn the arm of the later.
+        rows = np.array([-own.imag, own.real])
+        square = rows @ rows.T
+        square += 1e-12 * (np.trace(square) or 1.0) * np.eye(2)
+        solved = np.linalg.solve(square, np.column_stack([[miss.real, miss.imag], rows @ here]))
+        across, force = rows.T @ solved[:, 0], solved[:, 1]
+        later = own[np.maximum.outer(np.arange(len(free)), np.arange(len(free)))]
+        second = np.eye(len(free)) + force[0] * later.real + force[1] * later.imag
+        step = across
+        if len(free) > 2:
+            along = np.linalg.qr(rows.T, mode="complete").Q[:, 2:]
+            values, vectors = np.linalg.eigh(along.T @ second @ along)
+            along = along @ vectors
+            slope = along.T @ (here + second @ across)
+            step = across - along @ (slope / np.maximum(np.abs(values), LEAST_CURVATURE))
+        leaves = (is_low[free] & (step < 0)) | (is_high[free] & (step > 0))
+        if not leaves.any():
             break
-        places[-1] = goal
-        for i in range(len(lengths) - 1, 0, -1):
-            places[i] = _at_distance(places[i + 1], places[i], lengths[i])
-        for i, length in enumerate(lengths):
-            places[i + 1] = _at_distance(places[i], places[i + 1], length)
-    return places[1:]
-
-
-def _at_distance(centre: complex, place: complex, distance: float) -> complex:
-    way = place - centre
-    return centre + (way / abs(way) if way else 1.0) * distance
+        free = free[~leaves]
+    change = np.zeros(len(arms))
+    change[free] = step
+    return change

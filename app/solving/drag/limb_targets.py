@@ -15,6 +15,7 @@ from engine.geometry import Similarity, diameter
 
 # Part of the shape's diameter: places that are off a rigid motion by less move as a whole.
 RIGID = 2e-3
+WIDE = 2.0  # half widths of a limb: a body is wider
 
 
 class LimbTargets(NamedTuple):
@@ -39,12 +40,10 @@ def carry_body(
     The body's handles are those of no chain, and the roots. Locked handles stay, and so does
     everything as long as a handle of the body itself is dragged, or the layer is attached.
     """
-    of_chains = {handle for limb in limbs.limbs for handle in limb.chain.handles}
-    roots = {limb.chain.root for limb in limbs.limbs if limb.parent is None}
-    free = {each.id for each in layer.handles} - of_chains - layer.sprung_handles
-    body = sorted(identity for identity in free | roots if identity in start)
+    roots, on_body = _roots(limbs), _handles_of_body(layer, limbs)
+    body = sorted(identity for identity in on_body if identity in start)
     moved = [identity for identity in body if start[identity] != targets[identity]]
-    if not moved or len(body) < len(free | roots):
+    if not moved or len(body) < len(on_body):
         return BodyTargets(targets, is_rigid=not moved and bool(body))
     most = RIGID * diameter(layer.domain.outline)
     if roots.issuperset(moved) and not layer.has_parent:
@@ -62,6 +61,21 @@ def carry_body(
             }
     ways = _places(start, body), _places(targets, body)
     return BodyTargets(targets, is_rigid=_misfit(Similarity.fit_rigid_motion(*ways), *ways) <= most)
+
+
+def is_body_held_by_one(layer: Layer, limbs: Limbs, targets: Mapping[int, Target]) -> bool:
+    """Return whether the body has a single handle, without a rotation of its own.
+
+    The body then keeps its rotation, which nothing else holds. What is no wider than the limb is
+    the limb's own end, which turns with its bone.
+    """
+    handles = _handles_of_body(layer, limbs)
+    if len(handles) != 1 or any(targets[i].rotation is not None for i in handles):
+        return False
+    first = limbs.limbs[0]
+    root, joint = first.places[:2]
+    across = np.abs(((limbs.body - root) * (joint - root).conjugate()).imag) / abs(joint - root)
+    return bool(across.max(initial=0.0) > WIDE * first.shapes[0].half_width)
 
 
 def solve_limbs(
@@ -157,7 +171,7 @@ class _Chain:
             self.root,
             lengths[:last],
             self.targets[handles[last]].position,
-            [self._start(each) for each in handles[1 : last + 1]],
+            [*map(self._start, handles[1:last]), self._carried(handles[last])],
             side,
         )
         if last < len(lengths):
@@ -190,6 +204,10 @@ class _Chain:
         """Return the place of a handle from which its chain is solved."""
         if identity in self.moved:
             return self.targets[identity].position
+        return self._carried(identity)
+
+    def _carried(self, identity: int) -> complex:
+        """Return the place of a handle if the chain moves with its root."""
         return self.joints[identity] + self.root - self.joints[self.limb.chain.root]
 
     def _side(self, last: int) -> int:
@@ -206,6 +224,18 @@ class _Chain:
         if middle in self.moved and not self._is_flipped(middle):
             sides.insert(0, bend_side(self.root, given.position, self.targets[handles[2]].position))
         return next(side for side in sides if side)
+
+
+def _roots(limbs: Limbs) -> set[int]:
+    """Return the handles at which chains start from the body."""
+    return {limb.chain.root for limb in limbs.limbs if limb.parent is None}
+
+
+def _handles_of_body(layer: Layer, limbs: Limbs) -> set[int]:
+    """Return the handles that hold the body: those of no chain, and the roots."""
+    of_chains = {handle for limb in limbs.limbs for handle in limb.chain.handles}
+    free = {each.id for each in layer.handles} - of_chains - layer.sprung_handles
+    return free | _roots(limbs)
 
 
 def _position(target: Target | None) -> complex | None:

@@ -69,13 +69,17 @@ class PosedLimbs:
         *,
         pulled: Collection[int] = (),
         free: Collection[int] = (),
+        holds_body: bool = False,
     ) -> list[Aim]:
         """Return the aims of roots and joints at their places, and of rigid ends.
 
         Other ends are handles of their own. Ends that are `pulled` have a bounded force, and `free`
-        ones have none.
+        ones have none. With `holds_body` the body keeps its rotation.
         """
         aims, held = [], {limb.chain.root for limb in self.limbs.limbs}
+        if holds_body and self.has_body:
+            lever = complex(ANGLE_LEVER * self.armature.size)
+            aims.append(Aim(len(self.limbs.shafts), lever, lever, is_way=True))
         for limb in self.limbs.limbs:
             root, *inner, end = limb.chain.handles
             if limb.parent is None:

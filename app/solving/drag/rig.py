@@ -20,6 +20,7 @@ from app.document import (
 from app.solving.drag.limb_targets import (
     LimbTargets,
     carry_body,
+    is_body_held_by_one,
     solve_limbs,
     straighten_flipping,
 )
@@ -206,7 +207,13 @@ class PosedRig:
         if self.limbs is not None:
             places = {i: target.position for i, target in targets.items()}
             dragged = {identity for hand in hands for identity in hand.handles}
-            aims = self.limbs.aims(places, angles, pulled=dragged, free=self.rig.free)
+            aims = self.limbs.aims(
+                places,
+                angles,
+                pulled=dragged,
+                free=self.rig.free,
+                holds_body=is_body_held_by_one(self.rig.layer, self.limbs.limbs, targets),
+            )
         return self.deformer.handles.targets(
             np.array([target.position for target in wanted], dtype=np.complex128),
             [np.nan if target.rotation is None else target.rotation for target in wanted],

@@ -218,6 +218,41 @@ def test_a_chain_reaches_what_it_can_and_keeps_its_lengths(count, share):
         assert abs(found[-1]) == pytest.approx(min(abs(goal), lengths.sum()), rel=1e-4)
 
 
+@pytest.mark.parametrize("chain", [LEG, ARM])
+def test_a_body_held_by_the_root_alone_does_not_turn(chain):
+    handles = {name: HANDLES[name] for name in chain}
+    goal = {"foot": [300, 90], "hand": [350, 235]}[chain[-1]]
+    layer, _ = posed(
+        {"frame": 0}, {"frame": 9, "targets": {chain[-1]: goal}}, bones=[chain], handles=handles
+    )
+    body = find_limbs(layer).body
+    moved = layer.map_of(layer.keys[-1].pose)(body)
+    turn = np.angle(np.vdot(body - body.mean(), moved - moved.mean()))
+    assert abs(np.degrees(turn)) < 2
+    assert abs(places(layer)[chain[-1]] - complex(*goal)) < 1
+
+
+def bends_of(places):
+    ways = np.diff(places)
+    return np.angle(ways[1:] / ways[:-1])
+
+
+@pytest.mark.parametrize("goal", [500 + 260j, 150 + 300j, 320 - 200j])
+def test_all_joints_of_a_chain_share_a_bend_and_keep_their_sides(goal):
+    lengths, drawn = [270.0, 260.0, 140.0, 100.0], np.radians([100.0, -55.0, -75.0, -25.0])
+    start = np.cumsum(lengths * np.exp(1j * np.cumsum(drawn)))
+    found = np.array([0, *solve_chain(0j, lengths, goal, start.tolist(), 1)])
+    assert abs(found[-1] - goal) < 1e-5
+    assert np.all(bends_of(found) <= 0)
+    bends = np.array([np.angle(found[1]), *bends_of(found)])
+    # Nothing that keeps the end where it is changes less: the change is a sum of both rows.
+    arms = 1j * (found[-1] - found[:-1])
+    rows = np.array([arms.real, arms.imag])
+    free = (bends < -1e-9) | (np.arange(4) == 0)
+    rest = np.linalg.lstsq(rows[:, free].T, (bends - drawn)[free])[1]
+    assert rest == pytest.approx(0, abs=1e-9)
+
+
 def test_a_straight_chain_bends_to_its_side():
     for count, side in ((2, 1), (2, -1), (3, 1), (3, -1)):
         start = [complex(i + 1) for i in range(count)]
