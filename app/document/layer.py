@@ -501,10 +501,15 @@ class Layer:
             (handle.name for handle in handles),
             N_("Two handles have the name {value!r}; rename one of them."),
         )
-        require_distinct(
-            (each.position for each in handles),
-            N_("Two handles are at the position {value!r}; move or delete one of them."),
-        )
+        named = dict[complex, str]()
+        for handle in handles:
+            other = named.setdefault(handle.position, handle.name)
+            require(
+                other == handle.name,
+                N_("The handles {first!r} and {second!r} are at one place; move or delete one."),
+                first=other,
+                second=handle.name,
+            )
         require(
             all(handle.id < self.next_handle for handle in self.handles),
             N_("The next handle's id, {next_handle}, already belongs to a handle."),

@@ -139,6 +139,15 @@ class MeshExport:
                     format=format_.label, channels=", ".join(constant)
                 )
             )
+        bent = dict.fromkeys(map(self._document.deform_layer, layers))
+        groups = [each.name for each in bent if self._document.deform_members(each.id)]
+        if groups:
+            found.append(
+                _(
+                    "where parts of {names} cover each other, the {format} paints each member over "
+                    "the ones behind it, so covered ink shows through"
+                ).format(names=join_names(groups), format=format_.label)
+            )
         moving = [each.name for each in layers if each.footage is not None]
         if moving:
             found.append(

@@ -142,8 +142,10 @@ def _contents(
     if toast.action is not None:
         if toast.details:
             imgui.same_line()
+        imgui.push_style_color(imgui.Col_.button, look.palette.pressed)
         if note(is_pressed=imgui.small_button(toast.label)):
             actions += [toast.action, do(dismiss_toast, toast)]
+        imgui.pop_style_color()
     if others:
         text = ngettext("{count} more message", "{count} more messages", others)
         small_text(look, text.format(count=others))

@@ -47,7 +47,8 @@ def parse_bones(content: object, where: str, handles: Sequence[str]) -> tuple[Bo
     bones: dict[frozenset[int], Bone] = {}
     for index, entry in enumerate(as_list(content, where)):
         here = f"{where}[{index}]"
-        names = [as_text(name, here) for name in as_list(entry, here)]
+        listed = enumerate(as_list(entry, here))
+        names = [as_text(name, f"{here}[{number}]") for number, name in listed]
         if len(names) < 2:
             raise LissomError(
                 _(
@@ -57,6 +58,13 @@ def parse_bones(content: object, where: str, handles: Sequence[str]) -> tuple[Bo
             )
         for name in names:
             check_handle_name(name, handles, here)
+        twice = [name for number, name in enumerate(names) if name in names[: max(number - 1, 0)]]
+        if twice:
+            raise LissomError(
+                _("{where} names {name!r} twice; bones cannot form a circle").format(
+                    where=here, name=twice[0]
+                )
+            )
         ends = [list(handles).index(name) for name in names]
         for number, (first, second) in enumerate(pairwise(ends)):
             _check_ends(here, names[number], names[number + 1])

@@ -89,14 +89,15 @@ def _handles(session: Session, project: Project, shown: LayerFrame) -> list[Hand
 def find_off_target(project: Project, shown: LayerFrame) -> dict[int, complex]:
     """Return the pose's targets of handles that have not arrived, by handle id.
 
-    Handles with tracks or springs leave their pose's target, and are omitted. Sliders move all
-    handles away from it.
+    Handles with tracks or springs leave their pose's target, and are omitted. So are joints of
+    limbs, which follow, unless they are selected. Sliders move all handles away from it.
     """
     solved = None if shown.correction is None else shown.correction.sliders
     if solved is not None and solved.solution.weights.any():
         return _find_off_track(shown)
     layer, targets = shown.clip.layer, shown.pose.targets if shown.pose else {}
     own = {handle for track in _acting(shown) for handle in track.handles} | layer.sprung_handles
+    own |= layer.bone_joints - project.selection.handles
     drag = project.visible_drag
     if drag is not None and drag.world_targets is not None:
         targets = drag.world_targets

@@ -337,7 +337,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (handles.add_handle(0, CENTRE, weight=0.0), "weight"),
         (
             handles.add_handle(0, DOCUMENT.layers[0].handles[0].position),
-            "Two handles are at the position",
+            "are at one place",
         ),
         (handles.move_handle(0, 0, CENTRE - 2 * RADIUS), "outside the shape"),
         (handles.move_handle(0, 7, CENTRE), says(NO_HANDLE, identity=7)),

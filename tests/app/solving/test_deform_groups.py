@@ -30,7 +30,7 @@ from app.document import (
 from app.document.commands import scene_commands
 from app.document.keyframe import Target
 from app.errors import LissomError
-from app.export import ExportRequest, FrameRenderer, plan_export
+from app.export import ExportRequest, FrameRenderer, MeshExport, plan_export
 from app.motion import Evaluator
 from app.render.gpu.context import create_context
 from app.solving import (
@@ -404,3 +404,15 @@ def test_channels_of_members_repeat_with_the_cycles_of_their_group(bent):
     ink = document.layer(ink.id)
     assert ink.cycles == document.layer(group.id).cycles
     assert opacity_at(document, ink, 50) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("kind", ["html", "glb"])
+def test_pages_and_models_say_that_they_paint_members_one_by_one(bent, tmp_path, kind):
+    document, pictures = bent
+    settings = ExportSettings(format=kind, framing="canvas")
+    request = ExportRequest(out=tmp_path / "a", settings=settings, project="fish")
+    evaluator = Evaluator.exact(document)
+    textures = {each: picture.rgba for each, picture in pictures.items()}
+    plan = plan_export(document, request, evaluator)
+    (notice,) = MeshExport(document, textures, evaluator, plan).notices
+    assert notice.startswith("where parts of fish cover each other, the ")

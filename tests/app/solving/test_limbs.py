@@ -164,6 +164,8 @@ def test_one_bone_turns_around_its_root():
         ({"bones": [["hip", "knee", "foot"], ["hip", "knee"]]}, "another chain has too"),
         ({"bones": [["hip"]]}, "at least two handles from root to end"),
         ({"bones": [["hip", "hip"]]}, "connects 'hip' to itself"),
+        ({"bones": [["hip", "knee", "hip"]]}, "names 'hip' twice"),
+        ({"bones": [["hip", 3]]}, "must be a text, not 3"),
         ({"bones": [["hip", "toe"]]}, "names the handle 'toe', which does not exist"),
         ({"bones": [["hand", "foot"]]}, "bone from 'hand' to 'foot': The bone leaves the drawing"),
         ({"keys": [{"frame": 0, "side": {"knee": 2}}]}, "must be 1 or -1, not 2"),

@@ -9,9 +9,10 @@ from app.document import Target, handle_commands, stiffness_commands
 from app.document.rig.chains import Bone
 from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import stiffness_editing
-from app.editor.actions.posing.handles import remove_handles
+from app.editor.actions.posing.handles import add_handle, remove_handles
 from app.editor.actions.posing.pose_drag import release_drag, set_targets
 from app.editor.tools import move_tool
+from app.storage.assets import sample_images
 from app.ui.viewport.interaction.shapes import triangulate_stroke
 from app.ui.viewport.stiffness_overlay import measure_vertex_stiffness
 
@@ -183,11 +184,25 @@ def test_hidden_bones_act_and_a_handle_that_goes_takes_its_bones_along(window, t
     stiffness_editing.add_bone(window.session, ENDS)
     editing.edit_layer(window.session, stiffness_commands.set_bones_visible, shown=False)
     assert tab.layer.bones == (Bone(ends=ENDS, is_shown=False),)
+    first, second = (tab.layer.handle(end).name for end in ENDS)
     remove_handles(window.session, frozenset({ENDS[1]}))
     window.settle()
     assert tab.layer.bones == ()
+    told = f"Deleted with the handle: the bone {first} – {second}. Undo brings it back."
+    assert window.session.notices.toasts[-1].text == told
     editing.undo(window.session)
     assert len(tab.layer.bones) == 1
+
+
+def test_a_bone_that_is_refused_is_named(window):
+    """The bone would cross the hole of the ring."""
+    ring = window.open(sample_images() / "ring.png")
+    for place in (100 + 512j, 920 + 512j):
+        add_handle(window.session, place)
+    ends = tuple(handle.id for handle in ring.layer.handles)
+    stiffness_editing.add_bone(window.session, ends)
+    assert window.session.notices.toasts[-1].text.startswith("handle 1 – handle 2: The bone leaves")
+    assert ring.layer.bones == ()
 
 
 def test_dragging_goes_on_where_a_part_is_stiff(window, tab):

@@ -114,10 +114,11 @@ def mirror_stiffness(session: Session, project: Project) -> None:
 @with_project
 def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
     """Put a bone between two handles, or show why there can be none."""
-    try:
-        project.history.do(stiffness_commands.add_bone(project.selection.active, ends))
-    except (EngineError, LissomError) as error:
-        session.notices.show(message_of(error), tone="error", topic="material")
+    reason = bone_disabled_reason(project, ends)
+    if reason is not None:
+        session.notices.show(reason, tone="error", topic="material")
+        return
+    project.history.do(stiffness_commands.add_bone(project.selection.active, ends))
 
 
 @named_action(
@@ -138,8 +139,11 @@ def bone_disabled_reason(project: Project, ends: tuple[int, int]) -> str | None:
     layer = project.layer
     try:
         stiffness_commands.with_bone(layer, Bone(ends=ends))
-    except (EngineError, LissomError) as error:
+    except LissomError as error:
         return message_of(error)
+    except EngineError as error:
+        names = " – ".join(layer.handle(end).name for end in ends)
+        return _("{bone}: {error}").format(bone=names, error=message_of(error))
     return None
 
 

@@ -17,6 +17,7 @@ from app.editor.actions.action_spec import UNLESS_HANDLES, named_action
 from app.editor.actions.posing.pose_solver import finish_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
+from app.errors import join_names
 from app.motion import LayerFrame
 from app.texts import _, ngettext
 from engine.domain import MeshedDomain
@@ -49,11 +50,21 @@ def remove_handles(
     *,
     gesture: object | None = None,
 ) -> None:
-    """Delete handles; poses stay."""
+    """Delete handles; poses stay. A notice names bones that are deleted with them."""
     finish_drag(session, project)
+    layer = project.layer
+    bones = [bone for bone in layer.bones if not identities.isdisjoint(bone.ends)]
     command = handle_commands.remove_handles(project.selection.active, identities)
     project.history.do(command, gesture=gesture or object())
     project.selection.deselect_handles(identities)
+    if bones:
+        names = [" – ".join(layer.handle(end).name for end in bone.ends) for bone in bones]
+        text = ngettext(
+            "Deleted with the handle: the bone {bones}. Undo brings it back.",
+            "Deleted with the handle: the bones {bones}. Undo brings them back.",
+            len(bones),
+        )
+        session.notices.show(text.format(bones=join_names(names)), topic="material")
 
 
 @named_action(
