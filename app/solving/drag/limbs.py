@@ -43,7 +43,6 @@ class PosedLimbs:
         """Return the limbs in the pose of a map."""
         armature = limbs.armature_in(boundary)
         start = _locate(limbs, armature, shape)
-        has_body = has_body and len(limbs.body) > 1
         if has_body:
             body, number = (
                 Shaft(limbs.body, shape(limbs.body), BODY_STIFFNESS),

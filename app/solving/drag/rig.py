@@ -141,9 +141,12 @@ class PosedRig:
     limbs: PosedLimbs | None = None
 
     def keeping_body(self, keeps: bool) -> "PosedRig":  # noqa: FBT001 - a state
-        """Return the same with or without a body that keeps its shape."""
+        """Return the same with or without a body that keeps its shape, if it has points."""
         limbs, known = self.rig.limbs, self.limbs
-        if limbs is None or (known is not None and known.has_body == keeps):
+        if limbs is None:
+            return self
+        keeps = keeps and len(limbs.body) > 1
+        if known is not None and known.has_body == keeps:
             return self
         boundary = self.deformer.boundary
         posed = PosedLimbs.at(limbs, boundary, self.shape, has_body=keeps)
