@@ -125,15 +125,29 @@ class _LimbInstance(MotionInstance):
         moved = body.facing * template.shift(phase) + 1j * template.rise(phase)
         height = self.steps.raised - self.lowered(phase)
         places = {self.hips: body.joints[self.hips] + amount * moved + 1j * height}
-        turned = {self.hips: self._turn(self.hips, phase)}
+        own = self._own_turns(phase)
+        turned = {self.hips: own[self.hips]}
         stepping = {name for leg in self.steps.legs.values() for name in leg.joints[1:]}
         for name, before in list(body.parents.items())[1:]:
             if name in stepping:
                 continue
-            turned[name] = turned[before] + self._turn(name, phase)
+            turned[name] = turned[before] + own[name]
             bone = body.joints[name] - body.joints[before]
             places[name] = places[before] + bone * cmath.exp(1j * turned[name])
         return places, turned
+
+    def _own_turns(self, phase: float) -> dict[str, float]:
+        """Return the rotation of each joint's bone against its parent bone, in radians.
+
+        From the side the trunk is one rigid part, from the hips to the root of the neck: hips and
+        chest turn together, and the neck's rotation is that of the head.
+        """
+        own = {name: self._turn(name, phase) for name in self.body.joints}
+        if self.body.kind.is_side_view:
+            own[self.hips] += own.pop("chest", 0.0)
+            neck = own.pop("neck", 0.0)
+            own["head"] = own.get("head", 0.0) + neck
+        return dict.fromkeys(self.body.joints, 0.0) | own
 
     def _turn(self, name: str, phase: float) -> float:
         """Return the rotation of a joint's bone against its parent bone, in radians."""

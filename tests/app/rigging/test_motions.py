@@ -8,13 +8,14 @@ import pytest
 from bodies import body
 from numpy.testing import assert_allclose
 
-from app.rigging import MOTIONS, Body, Parameters, Timing, find_kind
+from app.rigging import MOTIONS, Body, Parameters, Timing, find_kind, without_side
 from engine.errors import EngineError
 
 USUAL = Parameters()
 FITTING = [(name, kind) for name, motion in MOTIONS.items() for kind in motion.kinds]
 TRAVELLING = [each for each in FITTING if MOTIONS[each[0]].template_for(each[1]).can_travel]
 SIZE = 240.0  # pixels: about that of the bodies
+TRUNK = {"hips", "chest", "neck", "hip", "shoulder"}
 each_motion = pytest.mark.parametrize(("name", "kind"), FITTING)
 each_gait = pytest.mark.parametrize(("name", "kind"), TRAVELLING)
 
@@ -170,8 +171,22 @@ def test_parts_of_a_body_are_delayed_by_a_share_of_the_cycle():
     usual = places("walk", "biped-side", shares)
     late = places("walk", "biped-side", shares, Parameters(tail_delay=0.25))
     assert_allclose(late["head"], usual["head"])
-    rise = usual["tail"] - usual["hips"], late["tail"] - late["hips"]
-    assert_allclose(rise[1][3:], rise[0][:-3], atol=1e-9 * SIZE)
+    # Against the trunk, which turns as a whole.
+    usual_tail, late_tail = (
+        (each["tail"] - each["hips"]) / (each["chest"] - each["hips"]) for each in (usual, late)
+    )
+    assert_allclose(late_tail[3:], usual_tail[:-3], atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["biped-side", "four-legs"])
+def test_from_the_side_the_trunk_is_one_rigid_part(kind):
+    rest = body(kind)
+    moved = places("walk", kind, np.linspace(0, 1, 25), Parameters(lean=10.0))
+    trunk = [name for name in rest.joints if without_side(name) in TRUNK]
+    assert len(trunk) >= 4
+    for one, other in pairwise(trunk):
+        apart = abs(rest.joints[other] - rest.joints[one])
+        assert_allclose(np.abs(moved[other] - moved[one]), apart, atol=1e-9 * SIZE)
 
 
 def test_a_leaning_trunk_leans_the_way_that_the_body_faces():
@@ -223,7 +238,8 @@ def test_bones_of_a_tail_follow_one_another_from_a_base_that_the_body_carries():
     assert chained.tail == ("tail.1", "tail.2", "tail.3", "tail")
     shares = np.linspace(0, 1, 97)
     moved = places("walk", "four-legs", shares, of=chained)
-    assert_allclose(moved["tail.1"] - moved["hips"], between["tail.1"] - hips, atol=1e-9 * SIZE)
+    base = (moved["tail.1"] - moved["hips"]) / (moved["chest"] - moved["hips"])
+    assert_allclose(base, (between["tail.1"] - hips) / (rest.joints["chest"] - hips), atol=1e-9)
     late = []
     for one, other in pairwise(chained.tail):
         bone = chained.joints[other] - chained.joints[one]
