@@ -29,10 +29,10 @@ uniform sampler2D member_6;
 uniform sampler2D member_7;
 #endif
 
-vec4 picture_of(sampler2D source, vec2 uv);
 
 vec4 stack = vec4(0.0);   // the last unclipped member with those clipped to it
 float faded = 1.0;        // its opacity
+Footprint foot;
 
 void lay() {
     stack *= faded;
@@ -40,7 +40,8 @@ void lay() {
 }
 
 void add(sampler2D source, int k) {
-    vec4 own = picture_of(source, texture_uv * windows[k].xy + windows[k].zw);
+    vec2 place = (texture_uv * windows[k].xy + windows[k].zw) * vec2(textureSize(source, 0)) - 0.5;
+    vec4 own = sample_of(source, place, foot);
     if (clipped[k] > 0.5) {
         own *= opacities[k];
         stack.rgb = own.rgb * stack.a + (1.0 - own.a) * stack.rgb;
@@ -53,6 +54,8 @@ void add(sampler2D source, int k) {
 
 void main() {
     colour = vec4(0.0);
+    // All members have pixels of one size.
+    foot = footprint_at(texture_uv * windows[0].xy * vec2(textureSize(member_0, 0)));
     add(member_0, 0);
     add(member_1, 1);
 #if MEMBERS > 2

@@ -13,7 +13,7 @@ MOST: Final = 8  # members in a pass; OpenGL has at least 16 texture units
 _MEMBERS: Final = {
     count: ShaderFiles(
         vertex=("mesh.vert", "placed.glsl"),
-        fragment=("members.frag", "sample.glsl"),
+        fragment=("sample.glsl", "members.frag"),
         constants=(("MEMBERS", count),),
     )
     for count in range(2, MOST + 1)
