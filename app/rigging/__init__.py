@@ -9,6 +9,10 @@ Imports: `engine`.
 from app.rigging.anatomy.handle_places import suggest_handles as suggest_handles
 from app.rigging.anatomy.joints import suggest_joints as suggest_joints
 from app.rigging.anatomy.kind_guess import guess_kind as guess_kind
+from app.rigging.anatomy.lines.arm_lines import (
+    find_arm_line as find_arm_line,
+    with_shoulders as with_shoulders,
+)
 from app.rigging.anatomy.lines.leg_tracks import TrackedLeg as TrackedLeg, track_legs as track_legs
 from app.rigging.anatomy.lines.limb_lines import find_limb_line as find_limb_line
 from app.rigging.anatomy.lines.near_limbs import (

@@ -1,4 +1,4 @@
-"""A person seen from the side whose near leg is drawn over the far leg."""
+"""Persons whose limbs touch in the drawing: legs from the side, arms and trunk from the front."""
 
 from typing import Literal
 
@@ -8,12 +8,23 @@ from PIL import Image, ImageDraw
 
 SIZE = (300, 520)
 SMOOTH = 3
+Discs = tuple[tuple[float, float, float], ...]
 INK, NEAR, FAR, SKIN = (20, 20, 24), (90, 120, 190), (60, 84, 140), (240, 205, 170)
 NEAR_LEG = ((138, 250, 30), (130, 150, 23), (112, 52, 18), (112, 36, 17), (142, 30, 12))
 FAR_LEG = ((148, 250, 28), (160, 150, 22), (172, 52, 18), (172, 36, 17), (204, 30, 12))
 BODY = ((140, 340, 34), (140, 260, 32))
 HEAD = ((148, 428, 50),)
 NOSE = ((190, 424, 14), (206, 420, 6))
+# From the front, with lowered arms behind the trunk.
+FRONT_LEGS = [
+    ((150 + x, 260, 30), (150 + 1.1 * x, 150, 24), (150 + 1.2 * x, 40, 18)) for x in (-32, 32)
+]
+SHOULDER = 98 + 372j  # of the right arm, on the left of the picture
+FRONT_ARMS = [
+    ((150 + x, 372, 20), (150 + 1.75 * x, 290, 16), (150 + 2.1 * x, 215, 15)) for x in (-52, 52)
+]
+FRONT_TRUNK = ((150, 360, 56), (150, 270, 50))
+FRONT_HEAD = ((150, 425, 20), (150, 470, 42))
 JOINTS = {
     "hips": 142 + 262j,
     "chest": 140 + 345j,
@@ -37,6 +48,18 @@ def limb(*discs: tuple[float, float, float]) -> shapely.Polygon:
 
 def draw_person(style: Literal["lines", "flat", "plain"]) -> Image.Image:
     """Draw a person: with outlines, in flat colours, or legs of one colour without a line."""
+    far = NEAR if style == "plain" else FAR
+    parts = [(FAR_LEG, far), (BODY, SKIN), (NEAR_LEG, NEAR), (NOSE, SKIN), (HEAD, SKIN)]
+    return _drawn(parts, has_lines=style == "lines")
+
+
+def draw_front(*, has_lines: bool) -> Image.Image:
+    """Draw a person from the front, with outlines or in a single colour."""
+    parts = [*FRONT_LEGS, *FRONT_ARMS, FRONT_TRUNK, FRONT_HEAD]
+    return _drawn([(discs, NEAR) for discs in parts], has_lines=has_lines)
+
+
+def _drawn(parts: list[tuple[Discs, tuple[int, int, int]]], *, has_lines: bool) -> Image.Image:
     width, height = SIZE
     image = Image.new("RGBA", (width * SMOOTH, height * SMOOTH))
     pen = ImageDraw.Draw(image)
@@ -46,11 +69,9 @@ def draw_person(style: Literal["lines", "flat", "plain"]) -> Image.Image:
             xy = shapely.get_coordinates(part.exterior) * [1, -1] + [0, height]
             pen.polygon([tuple(point) for point in xy * SMOOTH], fill=(*colour, 255))
 
-    far = NEAR if style == "plain" else FAR
-    parts = [(FAR_LEG, far), (BODY, SKIN), (NEAR_LEG, NEAR), (NOSE, SKIN), (HEAD, SKIN)]
     for discs, colour in parts:
         shape = limb(*discs)
-        if style == "lines":
+        if has_lines:
             fill(shape.buffer(2), INK)
             shape = shape.buffer(-2)
         fill(shape, colour)

@@ -1,11 +1,13 @@
-"""Recognition of chains and tails, and their joints along a path."""
+"""Recognition of chains and tails; joints along the paths of chains, tails and limbs."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
+from app.rigging.anatomy.anatomy import joint_share
 from app.rigging.anatomy.body_plan import BodyPlan
-from engine.arrays import Complexes, Floats, Indices
+from engine.arrays import Complexes, Floats, Indices, as_points
+from engine.geometry import contains
 
 # Length over width of a chain, and of a fish with a fin at its end.
 LONG, LONG_FISH = 3.4, 1.7
@@ -24,6 +26,87 @@ TAIL_BASE = 1.05
 TAIL_BONE, MOST_TAIL_BONES = 1.1, 4  # length of its bones in thicknesses, and their number
 ENDS = 0.15  # share of the length at each end
 WINDOW = 8  # nodes over which a direction is measured
+# Distance of a limb's root from the node it leaves, in radii of the node.
+ROOT = 0.8
+# An arm leaves the trunk where it is this many times as thick as in its middle. Its shoulder is
+# this many of its radii below the outline, and as many inwards of the armpit.
+LEAVING, SHOULDER, INWARDS = 1.2, 1.1, 0.3
+
+
+class JointPath:
+    """Nodes in order, and their distances along the path."""
+
+    def __init__(self, plan: BodyPlan, nodes: Indices) -> None:
+        self.nodes = nodes
+        self.places, self.radii = plan.places[nodes], plan.radii[nodes]
+        self.lengths = np.append(0.0, np.cumsum(np.abs(np.diff(self.places))))
+
+    def leaving(self, radii: float) -> int:
+        """Return the index of the node at which the path leaves the disc around its first one."""
+        inside = np.abs(self.places - self.places[0]) <= radii * self.radii[0]
+        return min(int(np.flatnonzero(inside)[-1]) + 1, len(self.nodes) - 1)
+
+    def part(self, first: int, last: int) -> tuple[Complexes, Floats, Floats]:
+        """Return places, radii and lengths from one node to another."""
+        last = max(last, first + 1)
+        lengths = self.lengths[first : last + 1]
+        return self.places[first : last + 1], self.radii[first : last + 1], lengths - lengths[0]
+
+    def bent(self, first: int, last: int) -> complex:
+        """Return the joint of a limb between two nodes."""
+        places, radii, lengths = self.part(first, last)
+        if len(places) < 3:
+            return complex(places[0])
+        share = joint_share(places, radii, lengths)
+        return complex(places[np.abs(lengths - share * lengths[-1]).argmin()])
+
+
+def find_limb(plan: BodyPlan, start: int, end: int, tip: int) -> tuple[complex, complex, complex]:
+    """Return the root, the joint and the tip of a limb that leaves the body at a node."""
+    way = JointPath(plan, plan.between(start, end))
+    root = way.leaving(ROOT)
+    nodes = way.nodes.tolist()
+    last = nodes.index(tip) if tip in nodes else len(nodes) - 1
+    root = min(root, max(last - 2, 0))
+    return complex(way.places[root]), way.bent(root, last), complex(way.places[last])
+
+
+def find_arm(plan: BodyPlan, start: int, end: int, tip: int) -> tuple[complex, complex, complex]:
+    """Return the shoulder, the elbow and the hand of an arm that leaves the body at a node.
+
+    The middle line of a lowered arm leaves the trunk at the armpit. The shoulder lies above it, in
+    the direction of the upper arm.
+    """
+    root, elbow, hand = find_limb(plan, start, end, tip)
+    way = JointPath(plan, plan.between(start, end))
+    outer = slice(int(np.abs(way.places - root).argmin()), int(np.abs(way.places - hand).argmin()))
+    thick = float(np.median(way.radii[outer])) if outer.start < outer.stop else 0.0
+    is_thin = np.flatnonzero(way.radii[outer] <= LEAVING * thick)
+    if not is_thin.size:
+        return root, elbow, hand
+    leaving = outer.start + int(is_thin[0])
+    place, radius = complex(way.places[leaving]), float(way.radii[leaving])
+    if place == elbow:
+        return root, elbow, hand
+    up = (place - elbow) / abs(place - elbow)
+    inwards = 1 if (plan.places[start] - elbow).real > 0 else -1
+    armpit = place - 1j * inwards * radius * up
+    across = inwards * (armpit - place).real + INWARDS * thick
+    steps = np.linspace(0.0, plan.tall, 400)
+    inside = contains(
+        plan.loops[0], as_points(place + steps * up, "The joints of a body"), holes=plan.loops[1:]
+    )
+    below = steps[max(int((~inside).argmax()) - 1, 0)] - SHOULDER * thick
+    # A level arm turns at its armpit, a lowered one below the outline of the shoulder.
+    ahead = min(below, across / max(inwards * up.real, 1e-9))
+    if ahead <= 0:
+        return root, elbow, hand
+    shoulder = place + ahead * up
+    places = np.append(shoulder, way.places[leaving : outer.stop + 1])
+    radii = np.append(radius, way.radii[leaving : outer.stop + 1])
+    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+    share = joint_share(places, radii, lengths)
+    return shoulder, complex(places[np.abs(lengths - share * lengths[-1]).argmin()]), hand
 
 
 def suggest_chain_joints(plan: BodyPlan) -> dict[str, complex]:

@@ -1,22 +1,28 @@
 """Joints of a kind of body, found in a shape."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from app.rigging.anatomy.anatomy import bend_share, joint_share, neck_along
+from app.rigging.anatomy.anatomy import bend_share, neck_along
 from app.rigging.anatomy.body_plan import BodyPlan
-from app.rigging.anatomy.chain import find_tail, name_tail_joints, suggest_chain_joints
+from app.rigging.anatomy.chain import (
+    ROOT,
+    JointPath,
+    find_arm,
+    find_limb,
+    find_tail,
+    name_tail_joints,
+    suggest_chain_joints,
+)
 from app.rigging.anatomy.legs import PlannedLeg
 from app.rigging.motions.kinds import BodyKind
-from engine.arrays import Complexes, Floats, Indices
+from engine.arrays import Complexes
 from engine.geometry import contains
 
 CROWN = 0.65  # radii above the middle of a head, off the face
 # A head without a neck is the first node whose disc comes this near to the top, in heights.
 BELOW_TOP = 0.08
-# Distance of a limb's root from the node it leaves, in radii of the node.
-ROOT = 0.8
 THICK_TRUNK = 0.85  # of a lying trunk: thickness at its hips and its chest
 # The chest is the last place where the trunk has this part of the hips' thickness, at most at this
 # share of it.
@@ -29,13 +35,18 @@ APART = 0.5  # radii of the hips: least distance of the chest
 CROTCH = 1.3  # radii of a leg from the crotch up to the hips
 
 
-def suggest_joints(loops: Sequence[Complexes], kind: BodyKind) -> Mapping[str, complex]:
+def suggest_joints(
+    loops: Sequence[Complexes], kind: BodyKind, *, has_arm_lines: bool = False
+) -> Mapping[str, complex]:
     """Suggest the joints of a kind of body in a shape.
 
     Parameters
     ----------
     loops : sequence of complex128
         The outline, counter-clockwise, and the outlines of the holes; y up.
+    has_arm_lines : bool
+        Whether lines in the picture part lowered arms from the trunk, so that they turn in their
+        shoulders; else arms turn at the armpits.
 
     Returns
     -------
@@ -52,7 +63,8 @@ def suggest_joints(loops: Sequence[Complexes], kind: BodyKind) -> Mapping[str, c
     elif kind.name == "four-legs":
         found = _lying(plan)
     else:
-        found = _standing(plan, is_frontal=kind.name == "biped-front")
+        is_frontal = kind.name == "biped-front"
+        found = _standing(plan, is_frontal=is_frontal, has_arm_lines=has_arm_lines)
     places = np.array(list(found.values()), dtype=np.complex128)
     inside = contains(loops[0], places, holes=loops[1:])
     nodes = plan.places[plan.anatomy.kept]
@@ -62,53 +74,15 @@ def suggest_joints(loops: Sequence[Complexes], kind: BodyKind) -> Mapping[str, c
     return {name: by_name[name] for name in kind.parents if name in by_name}
 
 
-class _JointPath:
-    """Nodes in order, and their distances along the path."""
-
-    def __init__(self, plan: BodyPlan, nodes: Indices) -> None:
-        self.nodes = nodes
-        self.places, self.radii = plan.places[nodes], plan.radii[nodes]
-        self.lengths = np.append(0.0, np.cumsum(np.abs(np.diff(self.places))))
-
-    def leaving(self, radii: float) -> int:
-        """Return the index of the node at which the path leaves the disc around its first one."""
-        inside = np.abs(self.places - self.places[0]) <= radii * self.radii[0]
-        return min(int(np.flatnonzero(inside)[-1]) + 1, len(self.nodes) - 1)
-
-    def part(self, first: int, last: int) -> tuple[Complexes, Floats, Floats]:
-        """Return places, radii and lengths from one node to another."""
-        last = max(last, first + 1)
-        lengths = self.lengths[first : last + 1]
-        return self.places[first : last + 1], self.radii[first : last + 1], lengths - lengths[0]
-
-    def bent(self, first: int, last: int) -> complex:
-        """Return the joint of a limb between two nodes."""
-        places, radii, lengths = self.part(first, last)
-        if len(places) < 3:
-            return complex(places[0])
-        share = joint_share(places, radii, lengths)
-        return complex(places[np.abs(lengths - share * lengths[-1]).argmin()])
-
-
-def _limb(plan: BodyPlan, start: int, end: int, tip: int) -> tuple[complex, complex, complex]:
-    """Return the root, the joint and the tip of a limb that leaves the body at a node."""
-    way = _JointPath(plan, plan.between(start, end))
-    root = way.leaving(ROOT)
-    nodes = way.nodes.tolist()
-    last = nodes.index(tip) if tip in nodes else len(nodes) - 1
-    root = min(root, max(last - 2, 0))
-    return complex(way.places[root]), way.bent(root, last), complex(way.places[last])
-
-
 def _leg(plan: BodyPlan, start: int, leg: PlannedLeg) -> tuple[complex, complex, complex]:
     """Return the root, the joint and the tip of a leg.
 
     The leg turns where it leaves the fork, so that the legs of one drawing can pass each other.
     """
-    return _limb(plan, start, int(leg.path[-1]), leg.ankle)
+    return find_limb(plan, start, int(leg.path[-1]), leg.ankle)
 
 
-def _head(plan: BodyPlan, way: _JointPath, *, is_frontal: bool) -> tuple[dict[str, complex], int]:
+def _head(plan: BodyPlan, way: JointPath, *, is_frontal: bool) -> tuple[dict[str, complex], int]:
     """Return the joints of head and neck, and the index of the node at which the trunk ends."""
     radii = way.radii
     at = neck_along(radii)
@@ -139,17 +113,20 @@ def _head(plan: BodyPlan, way: _JointPath, *, is_frontal: bool) -> tuple[dict[st
     return {"head": complex(way.places[at] + 0.4j * radii[at])}, at
 
 
-def _standing(plan: BodyPlan, *, is_frontal: bool) -> dict[str, complex]:
+def _standing(
+    plan: BodyPlan, *, is_frontal: bool, has_arm_lines: bool = False
+) -> dict[str, complex]:
     """Return the joints of a body that stands on two legs."""
     hips, end = plan.hips, plan.head_end
-    way = _JointPath(plan, plan.between(hips, end) if end is not None else np.array([hips]))
+    way = JointPath(plan, plan.between(hips, end) if end is not None else np.array([hips]))
     found, top = _head(plan, way, is_frontal=is_frontal)
     legs = plan.legs if len(plan.legs) < 2 else [plan.legs[0], plan.legs[-1]]
     found["hips"] = _hips(plan, hips, legs)
     limbs = [(hips, _leg(plan, hips, leg)) for leg in legs]
     found |= _sides(plan, limbs, ("hip", "knee", "foot"), is_frontal=is_frontal)
-    arms, tail = _arms_and_tail(plan, way, top, is_frontal=is_frontal)
-    arms += [(hips, _limb(plan, hips, int(leg.path[-1]), leg.ankle)) for leg in plan.legs[1:-1]]
+    find = find_arm if has_arm_lines else find_limb
+    arms, tail = _arms_and_tail(plan, way, top, find, is_frontal=is_frontal)
+    arms += [(hips, find_limb(plan, hips, int(leg.path[-1]), leg.ankle)) for leg in plan.legs[1:-1]]
     found |= _sides(plan, arms, ("shoulder", "elbow", "hand"), is_frontal=is_frontal)
     found |= name_tail_joints(tail)
     roots = [limb[0] for _, limb in arms]
@@ -190,7 +167,12 @@ def _sides(
 
 
 def _arms_and_tail(
-    plan: BodyPlan, way: _JointPath, top: int, *, is_frontal: bool
+    plan: BodyPlan,
+    way: JointPath,
+    top: int,
+    find: Callable[[BodyPlan, int, int, int], tuple[complex, complex, complex]],
+    *,
+    is_frontal: bool,
 ) -> tuple[list[tuple[int, tuple[complex, complex, complex]]], list[complex]]:
     """Return the limbs that leave the trunk above, and the joints of the longest one below."""
     nodes, arms, tails = way.nodes.tolist(), [], []
@@ -201,7 +183,7 @@ def _arms_and_tail(
         at = nodes.index(fork)
         if at > top:
             continue
-        limb = _limb(plan, fork, end, plan.handle_node(end))
+        limb = find(plan, fork, end, plan.handle_node(end))
         share = way.lengths[at] / max(way.lengths[top], 1e-9)
         root, _, tip = limb
         # On a short trunk all limbs leave at one place.
@@ -228,7 +210,7 @@ def _hips(plan: BodyPlan, node: int, legs: list[PlannedLeg]) -> complex:
     return place + (radius - above) * complex(down / abs(down))
 
 
-def _chest(way: _JointPath, top: int, hips: complex, roots: list[complex]) -> complex:
+def _chest(way: JointPath, top: int, hips: complex, roots: list[complex]) -> complex:
     """Return the place of the chest: between the arms, or where the trunk is last thick."""
     trunk = slice(0, top + 1)
     places, radii, lengths = way.places[trunk], way.radii[trunk], way.lengths[trunk]
@@ -283,7 +265,7 @@ def _lying(plan: BodyPlan) -> dict[str, complex]:
     behind = [end for end in plan.others if not plan.ahead(end)]
     if ahead:
         tip = max(ahead, key=lambda end: plan.facing * plan.places[end].real)
-        found |= _head(plan, _JointPath(plan, plan.between(chest, tip)), is_frontal=False)[0]
+        found |= _head(plan, JointPath(plan, plan.between(chest, tip)), is_frontal=False)[0]
     if behind:
         tails = [find_tail(plan, hips, end) for end in behind]
         found |= name_tail_joints(max(tails, key=lambda tail: abs(tail[-1] - tail[0])))

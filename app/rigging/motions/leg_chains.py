@@ -15,12 +15,25 @@ from app.rigging.motions.steps import Gait, required_drop, solve_leg_ik
 from app.rigging.motions.timing import EVEN, Timing
 
 FEET = (("foot.L", 0.0), ("foot.R", 0.0))
-STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, landings=FEET, gathered=0.0, straight=0.998)
+STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, landings=FEET, gathered=0.0, straight=1.0)
 # A tail of several bones swings by this factor more than one that turns at the hips, and its last
 # bone is later than its first by this share of the cycle.
 TAIL_SWING, TAIL_LAG = 2.2, 0.25
+LONGER = 1.3  # ratio of the lengths of arms of which the longer one waves
 LEVEL_HEAD = 0.7  # of the trunk's lean, by which the head turns back
 SAMPLES = 96  # of a cycle, at which the lowest position of the hips is searched
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmDirection:
+    """The direction of a bone of an arm on the page, however the arm is drawn.
+
+    Angles are in degrees: 0 points down, 90 points outwards, or ahead from the side, 180 points up.
+    """
+
+    angle: float
+    share: Periodic  # of the way from the drawn direction, 0 to 1
+    swing: Periodic = STEADY  # added to the direction, in degrees
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,8 +49,10 @@ class LimbMotion(MotionTemplate):
     turns: Mapping[str, Periodic] = field(default_factory=dict)
     # Rotations ahead or back, which are invisible from the front.
     leans: Mapping[str, Periodic] = field(default_factory=dict)
-    # Replace the angles above for joints of one side only, such as a waving hand.
-    single: Mapping[str, Periodic] = field(default_factory=dict)
+    # Shares by which bones of the trunk grow, such as those of a chest that swells.
+    growth: Mapping[str, Periodic] = field(default_factory=dict)
+    # Replace the angles above: of both sides, or of one, such as a waving arm.
+    aims: Mapping[str, ArmDirection] = field(default_factory=dict)
     lag: float = 0.5
     rise: Periodic = STEADY  # of the hips, in lengths of a leg
     shift: Periodic = STEADY  # of the hips, forwards, in lengths of a leg
@@ -70,8 +85,7 @@ class _LimbInstance(MotionInstance):
         gait = template.gait or STANDING
         self.steps = FootSteps(body, gait, parameters, timing)
         self.hips = next(iter(body.joints))
-        # A motion of one side is done by the other side if the first side is missing.
-        self.is_first_side = not template.either or template.either[0] in body.joints
+        self.is_first_side = self._prefers_first_side()
         tall = (body.box[1] - body.box[0]).imag
         self.reach = self.steps.reach or tall / 3
         self.lowered = STEADY
@@ -131,8 +145,13 @@ class _LimbInstance(MotionInstance):
         for name, before in list(body.parents.items())[1:]:
             if name in stepping:
                 continue
-            turned[name] = turned[before] + own[name]
-            bone = body.joints[name] - body.joints[before]
+            bone = self._grown(name, phase) * (body.joints[name] - body.joints[before])
+            direction = self._direction(name)
+            turned[name] = (
+                turned[before] + own[name]
+                if direction is None
+                else self._aimed(direction, name, bone, phase)
+            )
             places[name] = places[before] + bone * cmath.exp(1j * turned[name])
         return places, turned
 
@@ -159,17 +178,53 @@ class _LimbInstance(MotionInstance):
         curve = template.turns.get(kept)
         if curve is None and self.body.kind.name != "biped-front":
             curve = template.leans.get(kept)
-        alone = name if self.is_first_side else other_side(name)
-        if alone in template.single:
-            curve, late = template.single[alone], 0.0
         if curve is None:
             return self._lean(kept)
         late += self._delay(kept)
-        way = self.body.facing
-        if has_side and self.body.kind.name == "biped-front":
-            way = 1 if self.body.joints[name].real >= self.body.joints[self.hips].real else -1
+        way = self._outwards(name) if has_side else self.body.facing
         amount = self.parameters.size * (1.0 if has_side else self.parameters.energy)
         return way * amount * math.radians(curve(phase - late)) + self._lean(kept)
+
+    def _grown(self, name: str, phase: float) -> float:
+        """Return the length of a joint's bone, as a factor of the drawn one."""
+        curve = self.template.growth.get(without_side(name), STEADY)
+        moment = phase - self._delay(without_side(name))
+        return 1 + self.parameters.size * self.parameters.energy * curve(moment)
+
+    def _prefers_first_side(self) -> bool:
+        """Whether the first side does a motion of one side: it has a limb, or much the longer one.
+
+        From the side an arm over the trunk is short, since its root is hidden.
+        """
+        first, other = (name in self.body.joints for name in ("hand.R", "hand.L"))
+        if not (first and other):
+            return first
+        reach, others = (
+            self.body.path_length(self.body.limb_joints(name)) for name in ("hand.R", "hand.L")
+        )
+        if not self.body.kind.is_side_view or max(reach, others) < LONGER * min(reach, others):
+            return True
+        return (reach > others) != self.parameters.mirrored
+
+    def _direction(self, name: str) -> ArmDirection | None:
+        aims = self.template.aims
+        alone = name if self.is_first_side else other_side(name)
+        return aims.get(alone, aims.get(without_side(name)))
+
+    def _aimed(self, aim: ArmDirection, name: str, bone: complex, phase: float) -> float:
+        """Return the rotation of an arm's bone towards its direction on the page, in radians."""
+        size, way = self.parameters.size, self._outwards(name)
+        moment = phase - self._delay(without_side(name))
+        drawn = math.degrees(cmath.phase(1j * complex(way * bone.real, bone.imag)))
+        drawn += 360 * (drawn < -90)  # an arm drawn across the body comes down, not over the head
+        turn = min(size, 1.0) * aim.share(moment) * (aim.angle - drawn) + size * aim.swing(moment)
+        return way * math.radians(turn)
+
+    def _outwards(self, name: str) -> int:
+        """Return the sign of a rotation by which a limb moves outwards, or ahead from the side."""
+        if self.body.kind.name != "biped-front":
+            return self.body.facing
+        return 1 if self.body.joints[name].real >= self.body.joints[self.hips].real else -1
 
     def _delay(self, joint: str) -> float:
         """Return the share of the cycle by which a part of the body is later than usual."""

@@ -29,7 +29,9 @@ class FootSteps:
             gait = replace(gait, stride=0.0)
         self.body, self.gait, self.size, self.timing = body, gait, parameters.size, timing
         feet = [foot for foot, _ in gait.landings if foot in body.joints]
-        self.legs: dict[str, BodyLeg] = {foot: find_leg(body, foot) for foot in feet}
+        self.legs: dict[str, BodyLeg] = {
+            foot: find_leg(body, foot, is_as_drawn=gait.stance >= 1) for foot in feet
+        }
         self.reach = min(leg.length for leg in self.legs.values()) if feet else 0.0
         lowest = min((body.joints[foot].imag for foot in feet), default=0.0)
         # A foot that is drawn lifted, as in a stride, comes down to the ground.

@@ -73,8 +73,11 @@ class BodyLeg(NamedTuple):
         return sum(self.lengths)
 
 
-def find_leg(body: Body, tip: str) -> BodyLeg:
-    """Return the leg that ends at a foot, or at a hand of a body that walks on its hands."""
+def find_leg(body: Body, tip: str, *, is_as_drawn: bool = False) -> BodyLeg:
+    """Return the leg that ends at a foot, or at a hand of a body that walks on its hands.
+
+    It bends to the side on which it is drawn, if it stands as it is drawn or is clearly bent.
+    """
     joints = body.limb_joints(tip)
     places = [body.joints[name] for name in joints]
     lengths = tuple(abs(b - a) for a, b in pairwise(places))
@@ -82,7 +85,7 @@ def find_leg(body: Body, tip: str) -> BodyLeg:
     if len(places) == 3:
         turn = cmath.phase((places[2] - places[1]) / (places[1] - places[0]))
     bend = -1 if turn > 0 else 1
-    if abs(turn) < BENT:
+    if abs(turn) < BENT and not (is_as_drawn and turn):
         bend = _usual_bend(body, tip)
     return BodyLeg(joints, lengths, bend)
 

@@ -13,7 +13,8 @@ from engine.errors import EngineError
 from engine.geometry import diameter
 
 SAME_JOINT = 0.004  # of the drawing's diameter: a handle this close to a joint is its handle
-HEAD = 1.5  # radius of a stiff head, in distances of its joint from the outline
+HEAD = 1.1  # radius of a stiff head, in distances of its middle from the outline
+UPPER = 0.5  # of the way from the crown down to the next joint: a head's middle is in this part
 STIFF_HEAD = 20.0
 DEPTH = 0.6  # of near limbs, and below 0 of far limbs
 # Of the bone before a joint: the depth of a joint reaches this far.
@@ -43,7 +44,7 @@ def rig_body(
         with suppress(EngineError):
             document = stiffness_commands.add_bone(identity, ends)(document)
     if "head" in joints and before.stiffness is None:
-        document = _with_stiff_head(document, identity, body.joints["head"])
+        document = _with_stiff_head(document, identity, body)
     if body.kind.is_side_view:
         new = set(joints.values()) - {handle.id for handle in before.handles}
         document = _with_depths(
@@ -91,12 +92,16 @@ def _with_handle(
     return added, layer.next_handle
 
 
-def _with_stiff_head(document: Document, identity: int, head: complex) -> Document:
-    outline = document.layer(identity).domain.outline
-    radius = HEAD * float(np.abs(outline - head).min())
-    return stiffness_commands.paint_stiffness(identity, [head], radius=radius, amount=STIFF_HEAD)(
-        document
-    )
+def _with_stiff_head(document: Document, identity: int, body: Body) -> Document:
+    """Return a document whose heads are stiff: the largest disc between the neck and the crown."""
+    outline, crown = document.layer(identity).domain.outline, body.joints["head"]
+    below = body.joints.get(body.parents["head"], crown)
+    between = crown + UPPER * np.linspace(0.0, 1.0, 40) * (below - crown)
+    rooms = np.abs(outline - between[:, None]).min(axis=1)
+    widest = int(rooms.argmax())
+    return stiffness_commands.paint_stiffness(
+        identity, [complex(between[widest])], radius=HEAD * float(rooms[widest]), amount=STIFF_HEAD
+    )(document)
 
 
 def _with_depths(

@@ -18,6 +18,7 @@ from app.rigging import (
     near_side,
     suggest_joints,
     track_legs,
+    with_shoulders,
     with_tracked_legs,
 )
 from engine.arrays import Bytes
@@ -43,11 +44,12 @@ def guess_layer_kind(layer: Layer, rgba: Bytes | None) -> BodyKind:
 
 
 def guess_joints(layer: Layer, kind: str, rgba: Bytes | None) -> JointGuess:
-    """Return the joints of a kind of body in a layer: legs and near limbs by the picture."""
+    """Return the joints of a kind of body in a layer: by the outline, and lines in the picture."""
     body, loops = find_kind(kind), layer.domain.loops
     joints = suggest_joints(loops, body)
     if rgba is None or "foot.L" not in body.parents or not joints:
         return JointGuess(joints)
+    joints = with_shoulders(joints, body, loops, rgba, layer.corner)
     legs = track_legs(loops, rgba, layer.corner)
     facing = guess_facing(body, joints, loops[0])
     tracked = with_tracked_legs(joints, body, legs, facing)

@@ -1,13 +1,16 @@
 """Key poses of a motion preset as targets of handles."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from app.document import AppliedMotion, Layer, Pose, Spring, Target
 from app.rigging import Body, Performance, Timing
 from app.solving.motion_preset.motion_request import MotionRequest
 from engine.maps import Bounds
 
+RAISED = 0.45  # radians: an upper arm that turns farther leaves the trunk
 # Weight of standing feet, so that they do not slide: target errors are below 1 % of a step.
 FIRM = 1000.0
 # Share of the layer's limits that poses may use, since in-betweens may need a little more.
@@ -40,6 +43,20 @@ def plan_performance(order: MotionRequest, body: Body, frames: int) -> Performan
     zero = next(offset for offset, phase in times if phase == 0.0)
     shares = sorted((phase, (offset - zero) % frames / frames) for offset, phase in times)
     return motion.perform(body, parameters, Timing((*shares, (1.0, 1.0))))
+
+
+def find_raised_arms(body: Body, performed: Performance, phases: Iterable[float]) -> list[str]:
+    """Return the sides, L and R, of arms that a motion turns far from where they are drawn."""
+    poses = [performed.pose_at(phase) for phase in phases]
+    raised = []
+    for side in "LR":
+        bone = f"shoulder.{side}", f"elbow.{side}"
+        if all(name in body.joints for name in bone):
+            drawn = body.joints[bone[1]] - body.joints[bone[0]]
+            turned = [(pose.places[bone[1]] - pose.places[bone[0]]) / drawn for pose in poses]
+            if np.abs(np.angle(turned)).max() > RAISED:
+                raised.append(side)
+    return raised
 
 
 def find_key_poses(

@@ -1,6 +1,6 @@
-"""Limbs that touch in the drawing, parted by knife lines along the near limb's line."""
+"""Limbs that touch each other or the trunk in the drawing, parted by knife lines."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import combinations
 from typing import NamedTuple
@@ -9,7 +9,7 @@ import numpy as np
 
 from app.cut_out import CutLine, CutOut, build_picture_domain
 from app.document import Document, Layer
-from app.rigging import Body, find_limb_line, near_side, other_side
+from app.rigging import Body, find_arm_line, find_limb_line, near_side, other_side
 from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.texts import N_
 from engine.arrays import Bytes, Complexes, Floats
@@ -17,7 +17,7 @@ from engine.domain import CUT_WIDTH
 from engine.errors import EngineError
 from engine.geometry import box_diagonal, distance_to_segments
 
-PARTED = N_("The legs touch in the drawing: they were parted along the near leg's line.")
+PARTED = N_("Limbs touch in the drawing. They were parted along their drawn lines.")
 BESIDE = 2.0  # widths of a slit: a handle nearer to a knife line may be inside the slit
 
 
@@ -28,16 +28,19 @@ class LimbCuts(NamedTuple):
     joints: Mapping[str, complex]
 
 
-def find_limb_cuts(layer: Layer, body: Body, rgba: Bytes) -> LimbCuts | None:
+def find_limb_cuts(
+    layer: Layer, body: Body, rgba: Bytes, *, arms: Iterable[str] = "LR"
+) -> LimbCuts | None:
     """Return how the limbs of an undeformed body are parted; None if no line between them is found.
 
+    `arms` are the sides of the arms that are parted from the trunk, if seen from the front.
     No line passes through a handle, and each line leaves a domain.
     """
-    lines = [
-        line
-        for near, far in _pairs(body)
-        if (line := find_limb_line(layer.domain.loops, near, far, rgba, layer.corner)) is not None
-    ]
+    loops, corner = layer.domain.loops, layer.corner
+    found = [find_limb_line(loops, near, far, rgba, corner) for near, far in _pairs(body)]
+    if body.kind.name == "biped-front":
+        found += [find_arm_line(loops, body.joints, side, rgba, corner) for side in arms]
+    lines = [line for line in found if line is not None]
     width = CUT_WIDTH * box_diagonal(layer.domain.outline)
     handles = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
     free = [line for line in lines if (_distances(handles, line) > BESIDE * width).all()]

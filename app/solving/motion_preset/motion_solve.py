@@ -27,6 +27,7 @@ from app.solving.motion_preset.body_rig import rig_body
 from app.solving.motion_preset.key_poses import (
     JointKeyPose,
     find_key_poses,
+    find_raised_arms,
     plan_performance,
     with_joint_weights,
 )
@@ -192,7 +193,11 @@ def start_motion_solve(
             _("{layer!r} cannot move, because it contains no shape.").format(layer=before.name)
         )
     body = find_rest_body(before, order)
-    cuts = None if rgba is None else find_limb_cuts(before, body, rgba)
+    period = order.preset.frames(order.parameters, document.fps)
+    cuts = None
+    if rgba is not None:
+        arms = find_raised_arms(body, plan_performance(order, body, period), order.preset.phases)
+        cuts = find_limb_cuts(before, body, rgba, arms=arms)
     if cuts is not None and rgba is not None:
         document = part_limbs(document, identity, cuts, rgba)
         body = find_rest_body(document.layer(identity), replace(order, joints=cuts.joints))
@@ -200,7 +205,6 @@ def start_motion_solve(
     into = document.layer(identity)
     lead_frames = count_blend_frames(before, order.first, document.fps)
     start = order.first + lead_frames
-    period = order.preset.frames(order.parameters, document.fps)
     given = AppliedMotion(
         motion=order.motion,
         kind=order.kind,

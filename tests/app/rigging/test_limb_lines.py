@@ -3,10 +3,27 @@
 import numpy as np
 import pytest
 import shapely
-from overlapping_legs import FAR_LEG, JOINTS, NEAR_LEG, draw_person, limb, rgba_of
+from overlapping_legs import (
+    FAR_LEG,
+    FRONT_ARMS,
+    FRONT_TRUNK,
+    JOINTS,
+    NEAR_LEG,
+    SHOULDER,
+    draw_front,
+    draw_person,
+    limb,
+    rgba_of,
+)
 
 from app.cut_out import build_picture_domain
-from app.rigging import find_limb_line
+from app.rigging import (
+    find_arm_line,
+    find_kind,
+    find_limb_line,
+    suggest_joints,
+    with_shoulders,
+)
 from engine.geometry import as_xy
 
 LIMBS = [[JOINTS[f"{name}.{side}"] for name in ("hip", "knee", "foot")] for side in "RL"]
@@ -52,3 +69,26 @@ def test_line_stays_in_the_gap_when_nothing_tells_the_legs_apart():
 def test_no_line_is_found_when_the_legs_are_apart():
     away = [[at - 160 for at in LIMBS[0]], LIMBS[1]]
     assert line_of("lines", [away[1], [at + 500 for at in away[1]]])[0] is None
+
+
+@pytest.mark.parametrize("has_lines", [True, False])
+def test_lowered_arms_turn_in_their_shoulders_where_a_line_parts_them_from_the_trunk(has_lines):
+    rgba = rgba_of(draw_front(has_lines=has_lines))
+    domain, _ = build_picture_domain(rgba, triangles=1000, detail="normal")
+    kind = find_kind("biped-front")
+    at_armpits = suggest_joints(domain.loops, kind)
+    joints = with_shoulders(at_armpits, kind, domain.loops, rgba, 0j)
+    if not has_lines:
+        assert joints == at_armpits
+        return
+    assert abs(joints["shoulder.R"] - SHOULDER) < 20
+    assert joints["shoulder.R"].imag > at_armpits["shoulder.R"].imag + 15
+    assert joints["hand.R"] == at_armpits["hand.R"]
+    line = find_arm_line(domain.loops, joints, "R", rgba, 0j)
+    assert line is not None
+    arm, trunk = (limb(*discs).buffer(2) for discs in (FRONT_ARMS[0], FRONT_TRUNK))
+    points = shapely.points(as_xy(line))
+    inside = points[domain.contains(line)]
+    assert line[-1].imag < joints["shoulder.R"].imag - 15
+    assert shapely.distance(trunk.exterior, inside).max() < 14
+    assert shapely.distance(arm, inside).max() < 6

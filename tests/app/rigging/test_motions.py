@@ -8,7 +8,15 @@ import pytest
 from bodies import body
 from numpy.testing import assert_allclose
 
-from app.rigging import MOTIONS, Body, Parameters, Timing, find_kind, without_side
+from app.rigging import (
+    MOTIONS,
+    Body,
+    Parameters,
+    Timing,
+    find_kind,
+    find_motion,
+    without_side,
+)
 from engine.errors import EngineError
 
 USUAL = Parameters()
@@ -45,10 +53,11 @@ def test_motions_come_round_smoothly(name, kind):
 
 @pytest.mark.parametrize(("name", "kind"), [each for each in FITTING if each[1] != "anything"])
 def test_limbs_keep_their_lengths(name, kind):
-    rest = body(kind)
+    rest, template = body(kind), find_motion(name).template_for(kind)
     moved = places(name, kind, np.linspace(0, 1, 49), Parameters(size=1.2, energy=1.3))
+    growing = getattr(template, "growth", {})
     for joint, before in rest.parents.items():
-        if before:
+        if before and without_side(joint) not in growing:
             length = abs(rest.joints[joint] - rest.joints[before])
             lengths = np.abs(moved[joint] - moved[before])
             assert_allclose(lengths, length, rtol=1e-9, err_msg=joint)
@@ -121,6 +130,30 @@ def test_mirrored_the_other_arm_waves():
     rest = body("biped-side")
     twice = rest.mirrored().mirrored()
     assert (dict(twice.joints), twice.facing) == (dict(rest.joints), rest.facing)
+
+
+@pytest.mark.parametrize("drawn", [-75, 0, 60], ids=["lowered", "spread", "raised"])
+def test_a_waving_hand_is_up_however_the_arm_is_drawn(drawn):
+    rest = body("biped-front")
+    shoulder, way = rest.joints["shoulder.R"], -np.exp(-1j * np.radians(drawn))
+    arm = {"elbow.R": shoulder + 40 * way, "hand.R": shoulder + 80 * way}
+    moved = places(
+        "wave", "biped-front", np.arange(9) / 8, of=replace(rest, joints=rest.joints | arm)
+    )
+    forearm = np.degrees(np.angle(moved["hand.R"] - moved["elbow.R"]))
+    assert_allclose(forearm[2:7], [126, 84, 126, 84, 126], atol=1e-6)
+    assert (moved["hand.R"] - shoulder)[2:7].imag.min() > 25
+    assert_allclose(moved["hand.R"][[0, 8]], arm["hand.R"], atol=1e-9)
+
+
+def test_of_an_arm_over_the_trunk_and_a_free_one_the_free_one_waves():
+    rest = body("biped-side")
+    near = {"elbow.R": rest.joints["chest"] - 6j, "hand.R": rest.joints["chest"] - 12j}
+    of = replace(rest, joints=rest.joints | near)
+    shares = np.linspace(0, 1, 13)
+    for mirrored, still in ((False, "hand.R"), (True, "hand.L")):
+        moved = places("wave", "biped-side", shares, Parameters(mirrored=mirrored), of=of)
+        assert np.ptp(moved[still].imag) < 2
 
 
 def test_speed_is_of_time_alone_and_start_is_a_share_of_the_cycle():

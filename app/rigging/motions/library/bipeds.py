@@ -1,7 +1,9 @@
 """Motions of bipeds, and the walk of all kinds."""
 
+from dataclasses import replace
+
 from app.rigging.motions.curves import EIGHTHS, Curve, even_curve
-from app.rigging.motions.leg_chains import STANDING, LimbMotion
+from app.rigging.motions.leg_chains import STANDING, ArmDirection, LimbMotion
 from app.rigging.motions.library.four_legs import WALK_ON_FOUR
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.steps import Gait
@@ -111,12 +113,17 @@ RUN = Motion(
     },
 )
 
-_RAISED = even_curve(0, 20, 38, 41, 38, 41, 38, 41, 38, 28, 8, 0)
-_SHAKEN = even_curve(0, 18, 60, 30, 60, 30, 60, 30, 60, 30, 8, 0)
-_GREETING = {
-    "chest": even_curve(0, 1, 2, 3, 2, 3, 2, 3, 2, 1, 0, 0),
-    "head": even_curve(0, 2, 4, 2, 4, 2, 4, 2, 4, 2, 0, 0),
-}
+# The upper arm leads up and down, and the forearm follows; then it swings from the elbow.
+_UPPER = ArmDirection(
+    angle=95,
+    share=even_curve(0, 0.6, 1, 1, 1, 1, 1, 0.45),
+    swing=even_curve(0, 0, 2, -3, 2, -3, 2, 0),
+)
+_FOREARM = ArmDirection(
+    angle=170,
+    share=even_curve(0, 0.4, 1, 1, 1, 1, 1, 0.55),
+    swing=even_curve(0, 0, -26, 16, -26, 16, -26, 0),
+)
 WAVE = Motion(
     name="wave",
     label=_("Wave"),
@@ -125,8 +132,8 @@ WAVE = Motion(
     phases=EIGHTHS,
     templates={
         kind: LimbMotion(
-            turns=_GREETING,
-            single={"elbow.R": _RAISED, "hand.R": _SHAKEN},
+            turns={"head": even_curve(0, 1, 3, 4, 4, 4, 3, 1)},
+            aims={"elbow.R": _UPPER, "hand.R": _FOREARM},
             needed=("hips",),
             either=("hand.R", "hand.L"),
         )
@@ -143,23 +150,31 @@ NOD = Motion(
     templates={
         "biped-side": LimbMotion(
             turns={
-                "chest": even_curve(0, -2, -1, -2, -1, 0),
-                "neck": even_curve(0, -5, 1, -4, 1, 0),
-                "head": even_curve(0, -5, -14, -4, 3, -4, -12, -4, 2, 1, 0, 0),
+                "chest": even_curve(0, -1, -2, -1, -2, -1, 0, 0),
+                "neck": even_curve(1, -3, -5, 0, -4, 0, 1, 1),
+                "head": even_curve(2, -6, -15, 2, -12, 2, 3, 2),
             },
+            gait=STANDING,
             needed=("hips", "head"),
         ),
         # From the front a nodding head comes down and up again.
         "biped-front": LimbMotion(
-            turns={"head": even_curve(0, 1, 2, 1, 0, -1, -2, -1)},
-            rise=even_curve(0, -0.02, -0.06, -0.02, 0.01, -0.02, -0.05, -0.02, 0.005, 0, 0, 0),
+            turns={"head": even_curve(0, 1, 1, 0, 0, -1, -1, 0)},
+            growth={"head": even_curve(0.01, -0.03, -0.12, -0.02, -0.1, -0.02, -0.01, 0.01)},
             gait=STANDING,
             needed=("hips", "head"),
         ),
     },
 )
 
-# Crouch, take off, fly, land, and come up.
+# Crouch, take off, rise, turn, fall, land, sink and come up; feet stand from landing to take-off.
+_LEAP_PHASES = (0.0, 0.2, 0.34, 0.43, 0.53, 0.63, 0.72, 0.84)
+
+
+def _leap(*values: float) -> Curve:
+    return Curve(tuple(zip(_LEAP_PHASES, values, strict=True)))
+
+
 _LEAP = LimbMotion(
     gait=Gait(
         stance=0.62,
@@ -170,67 +185,79 @@ _LEAP = LimbMotion(
         roll=16,
     ),
     lag=0.0,
-    rise=Curve(
-        (
-            (0.0, 0.0),
-            (0.2, -0.15),
-            (0.34, 0.0),
-            (0.53, 0.34),
-            (0.72, 0.0),
-            (0.82, -0.12),
-            (0.94, -0.03),
-        )
-    ),
+    rise=_leap(0, -0.15, 0.0, 0.24, 0.34, 0.24, 0.0, -0.13),
     leans={
-        "chest": Curve(
-            ((0.0, 0), (0.2, -8), (0.36, 1), (0.55, 0), (0.72, -2), (0.82, -7), (0.94, -1))
-        ),
-        "head": Curve(((0.0, 0), (0.2, 6), (0.36, 3), (0.55, -3), (0.72, 2), (0.82, 5), (0.94, 1))),
-        "tail": Curve(
-            ((0.0, 0), (0.2, 8), (0.38, -10), (0.55, -5), (0.72, 8), (0.82, 10), (0.94, 2))
-        ),
+        "chest": _leap(0, -10, 1, 1, 0, -2, -3, -8),
+        "head": _leap(0, 7, 3, -1, -4, 0, 3, 6),
+        "tail": _leap(0, 8, -8, -10, -5, 4, 10, 8),
     },
+    growth={"chest": _leap(0, -0.04, 0.04, 0.02, 0, 0.02, 0.02, -0.05)},
     turns={
-        "elbow": Curve(
-            ((0.0, 0), (0.2, -16), (0.38, 14), (0.55, 24), (0.72, 12), (0.82, -4), (0.94, -2))
-        ),
-        "hand": Curve(
-            ((0.0, 0), (0.2, 4), (0.38, 10), (0.55, 14), (0.72, 9), (0.82, 6), (0.94, 1))
-        ),
+        "elbow": _leap(0, -18, 14, 26, 30, 24, 14, -6),
+        "hand": _leap(0, 2, 4, 14, 20, 24, 18, 6),
     },
     needed=LEAPERS,
 )
-
-
+# From the front arms rise outwards; they do not swing back through the trunk.
+_LEAP_FRONTAL = replace(
+    _LEAP,
+    rise=_leap(0, -0.11, 0.0, 0.24, 0.34, 0.24, 0.0, -0.1),
+    turns={
+        "head": _leap(0, 1, 0, -1, -1, 0, 1, 1),
+        "elbow": _leap(0, 4, 22, 38, 44, 42, 32, 8),
+        "hand": _leap(0, -2, -4, 6, 14, 20, 20, 6),
+    },
+)
 JUMP = Motion(
     name="jump",
     label=_("Jump"),
     hint=_("Crouch, leap, land and rise again"),
     seconds=1.25,
-    phases=EIGHTHS,
-    templates={"biped-side": _LEAP, "biped-front": _LEAP},
+    phases=_LEAP_PHASES,
+    templates={"biped-side": _LEAP, "biped-front": _LEAP_FRONTAL},
 )
 
+# Sunk, pushing, taking off, rising, in the air, falling, landing, sinking.
+HOP_PHASES = (0.0, 0.14, 0.28, 0.4, 0.52, 0.64, 0.76, 0.86)
+
+
+def _hop(*values: float) -> Curve:
+    return Curve(tuple(zip(HOP_PHASES, values, strict=True)))
+
+
+_BOTH_FEET = Gait(
+    stance=0.52,
+    stride=0.75,
+    lift=0.22,
+    landings=(("foot.L", 0.76), ("foot.R", 0.76)),
+    gathered=0.0,
+    roll=20,
+)
 # Like a kangaroo: both feet land together, the body sinks and is thrown ahead, the tail against it.
 LEAPING = LimbMotion(
-    gait=Gait(
-        stance=0.42,
-        stride=0.75,
-        lift=0.22,
-        landings=(("foot.L", 0.0), ("foot.R", 0.0)),
-        gathered=0.0,
-        roll=20,
-    ),
+    gait=_BOTH_FEET,
     lag=0.0,
-    rise=Curve(((0.0, 0.0), (0.2, -0.16), (0.42, 0.02), (0.7, 0.22), (0.9, 0.06))),
+    rise=_hop(-0.15, -0.1, 0.02, 0.15, 0.2, 0.15, 0.02, -0.09),
     leans={
-        "chest": Curve(((0.0, 1), (0.2, -7), (0.42, -3), (0.7, 2), (0.9, 3))),
-        "head": Curve(((0.0, 2), (0.2, 6), (0.42, 3), (0.7, -2), (0.9, -2))),
-        "tail": Curve(((0.0, 6), (0.2, -10), (0.42, -4), (0.7, 12), (0.9, 12))),
+        "chest": _hop(-7, -6, -3, 0, 2, 3, 2, -3),
+        "head": _hop(6, 5, 3, 0, -2, -2, 0, 4),
+        "tail": _hop(-8, -10, -4, 6, 12, 12, 8, -2),
     },
+    growth={"chest": _hop(-0.04, -0.02, 0.03, 0.02, 0, 0.01, 0.01, -0.03)},
     turns={
-        "elbow": Curve(((0.0, -4), (0.2, -10), (0.42, 6), (0.7, 14), (0.9, 4))),
-        "hand": Curve(((0.0, 2), (0.2, 6), (0.42, 8), (0.7, 12), (0.9, 6))),
+        "elbow": _hop(-10, -4, 6, 13, 15, 11, 4, -6),
+        "hand": _hop(6, 4, 4, 8, 12, 14, 12, 8),
     },
     needed=LEAPERS,
+)
+# From the front it hops in place.
+LEAPING_FRONTAL = replace(
+    LEAPING,
+    gait=replace(_BOTH_FEET, stride=0.0),
+    rise=_hop(-0.1, -0.06, 0.02, 0.15, 0.2, 0.15, 0.02, -0.06),
+    turns={
+        "head": _hop(1, 1, 0, -1, -1, -1, 0, 1),
+        "elbow": _hop(2, 6, 16, 26, 30, 28, 20, 8),
+        "hand": _hop(8, 0, -4, 2, 10, 16, 18, 14),
+    },
 )

@@ -1,34 +1,62 @@
-"""Motions of bodies that stand: talking, looking about, breathing and flying."""
+"""Motions of bodies that stand: talking, nodding, looking about, breathing and flying."""
 
 from app.rigging.motions.curves import EIGHTHS, even_curve
-from app.rigging.motions.leg_chains import STANDING, LimbMotion
+from app.rigging.motions.leg_chains import STANDING, ArmDirection, LimbMotion
 from app.rigging.motions.library.whole_body import BREATHE_WHOLE
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.steps import Gait
 from app.texts import _
 
 HEAD = ("hips", "head")
+SPREAD = even_curve(0.8)  # lowered arms beat lower than wings that are drawn spread
 IN_THE_AIR = Gait(stance=1.0, stride=0.0, lift=0.0, landings=())
-_HANDS_TALK = {"elbow": even_curve(0, 4, 8, 5, 2, 6, 9, 3), "hand": even_curve(0, 9, 18, 8)}
+# One hand comes up and beats to the words; the other one answers, lower and later.
+_TALKING = {
+    "elbow.R": ArmDirection(angle=28, share=even_curve(0, 0.7, 1, 0.9, 1, 0.9, 0.7, 0.3)),
+    "hand.R": ArmDirection(
+        angle=105,
+        share=even_curve(0, 0.5, 1, 1, 1, 1, 0.7, 0.25),
+        swing=even_curve(0, 0, 12, -14, 10, -16, 0, 0),
+    ),
+    "elbow.L": ArmDirection(angle=25, share=even_curve(0, 0, 0.3, 0.6, 0.7, 0.6, 0.4, 0.1)),
+    "hand.L": ArmDirection(
+        angle=70,
+        share=even_curve(0, 0, 0.2, 0.5, 0.7, 0.7, 0.5, 0.2),
+        swing=even_curve(0, 0, 0, 6, -8, 6, 0, 0),
+    ),
+}
+_NODDING = {"head": even_curve(0, -0.02, -0.05, 0, -0.045, 0, -0.03, 0)}
 TALK = Motion(
     name="talk",
     label=_("Talk"),
     hint=_("The head nods to words, and the hands go along"),
-    seconds=2.0,
+    seconds=2.5,
     phases=EIGHTHS,
     templates={
-        kind: LimbMotion(
-            turns={
-                "chest": even_curve(0, -1, 0, 1, 0, -1, -2, -1),
-                "head": even_curve(0, 4, -2, 3, -1, 5, 1, -2),
-                **_HANDS_TALK,
-            },
-            lag=0.25,
+        "biped-front": LimbMotion(
+            turns={"head": even_curve(0, 1, 3, 2, 0, -2, -1, 0)},
+            growth=_NODDING,
+            aims=_TALKING,
+            gait=STANDING,
             needed=HEAD,
-        )
-        for kind in ("biped-front", "biped-side")
+        ),
+        "biped-side": LimbMotion(
+            turns={
+                "chest": even_curve(0, -1, -2, -1, -2, -1, -1, 0),
+                "head": even_curve(0, -2, -7, 1, -6, 2, -4, 0),
+            },
+            aims={name: aim for name, aim in _TALKING.items() if name.endswith(".R")},
+            gait=STANDING,
+            needed=HEAD,
+        ),
     },
 )
+_GLANCE = even_curve(0, 8, 10, 9.5, 1, -8, -9.5, -9)  # to one side, rest, to the other, rest
+_LOOKING = {
+    "neck": even_curve(0, 4, 5, 5, 0, -4, -5, -4),
+    "head": _GLANCE,
+    "tail": even_curve(0, -2, -6, -5, -2, 3, 6, 4),
+}
 LOOK = Motion(
     name="look",
     label=_("Look about"),
@@ -36,19 +64,12 @@ LOOK = Motion(
     seconds=4.0,
     phases=EIGHTHS,
     templates={
-        kind: LimbMotion(
-            turns={
-                "chest": even_curve(0, 1, 2, 1, 0, -1, -2, -1),
-                "neck": even_curve(0, 4, 5, 4, 0, -4, -5, -4),
-                "head": even_curve(0, 9, 11, 9, 0, -8, -10, -8),
-                "tail": even_curve(0, -4, -6, -4, 0, 4, 6, 4),
-            },
-            gait=STANDING,
-            needed=HEAD,
-        )
+        kind: LimbMotion(turns=_LOOKING, gait=STANDING, needed=HEAD)
         for kind in ("biped-front", "biped-side", "four-legs")
     },
 )
+# In for a bit less than half of the time, out for the rest; the chest leads, the head follows.
+_BREATH = even_curve(0, 0.012, 0.03, 0.038, 0.034, 0.022, 0.01, 0.002)
 BREATHE = Motion(
     name="breathe",
     label=_("Breathe"),
@@ -59,20 +80,24 @@ BREATHE = Motion(
         "anything": BREATHE_WHOLE,
         **{
             kind: LimbMotion(
-                rise=even_curve(-0.02, -0.012, 0.004, 0.016, 0.02, 0.012, -0.004, -0.016),
                 turns={
-                    "chest": even_curve(0, 1, 2, 2.5, 2, 1, 0, -0.5),
-                    "head": even_curve(0, -1, -2, -2.5, -2, -1, 0, 0.5),
-                    "elbow": even_curve(0, 1, 3, 4, 3, 1, 0, -1),
-                    "tail": even_curve(0, 2, 4, 5, 4, 2, 0, -1),
+                    "chest": even_curve(0, 0.5, 1.2, 1.5, 1.3, 0.8, 0.3, 0),
+                    "head": even_curve(0, 0.3, 0, -1, -1.8, -1.5, -0.8, -0.2),
+                    "elbow": even_curve(0, 0.5, 2, 3.5, 3.5, 2.5, 1, 0.2),
+                    "tail": even_curve(0, 1, 3, 5, 5, 3, 1, 0),
                 },
+                growth={"chest": _BREATH, "shoulder": _BREATH},
+                gait=STANDING,
                 lag=0.0,
                 needed=HEAD,
             )
-            for kind in ("biped-front", "biped-side")
+            for kind in ("biped-front", "biped-side", "four-legs")
         },
     },
 )
+_BEAT = even_curve(-2, 0, 2, 2, 2, 0, -2, -2)
+_AGAINST_WINGS = even_curve(-0.05, -0.05, 0.0, 0.06, 0.09, 0.06, 0.01, -0.03)
+# Wings go up in half of the time and beat down faster; the forearm follows the upper arm.
 FLY = Motion(
     name="fly",
     label=_("Fly"),
@@ -80,19 +105,33 @@ FLY = Motion(
     seconds=2 / 3,
     phases=EIGHTHS,
     templates={
-        kind: LimbMotion(
-            turns={
-                "elbow": even_curve(30, 24, 0, -24, -30, -20, 4, 24),
-                "hand": even_curve(6, 22, 26, 14, -6, -22, -26, -14),
-                "head": even_curve(-2, 0, 2, 2, 2, 0, -2, -2),
-                "tail": even_curve(4, 0, -4, -5, -4, 0, 4, 5),
+        "biped-front": LimbMotion(
+            turns={"head": _BEAT, "tail": even_curve(4, 0, -4, -5, -4, 0, 4, 5)},
+            aims={
+                "elbow": ArmDirection(
+                    angle=92, share=SPREAD, swing=even_curve(34, 25, -2, -26, -34, -23, 4, 26)
+                ),
+                "hand": ArmDirection(
+                    angle=96, share=SPREAD, swing=even_curve(38, 46, 26, -12, -42, -52, -28, 14)
+                ),
             },
-            lag=0.0,
-            rise=even_curve(-0.04, -0.05, 0.0, 0.05, 0.08, 0.06, 0.02, -0.02),
+            rise=_AGAINST_WINGS,
             gait=IN_THE_AIR,
             needed=("hips",),
             either=("hand.R", "hand.L"),
-        )
-        for kind in ("biped-front", "biped-side")
+        ),
+        "biped-side": LimbMotion(
+            turns={
+                "elbow": even_curve(30, 24, 0, -24, -30, -20, 4, 24),
+                "hand": even_curve(6, 22, 26, 14, -6, -22, -26, -14),
+                "head": _BEAT,
+                "tail": even_curve(4, 0, -4, -5, -4, 0, 4, 5),
+            },
+            lag=0.0,
+            rise=_AGAINST_WINGS,
+            gait=IN_THE_AIR,
+            needed=("hips",),
+            either=("hand.R", "hand.L"),
+        ),
     },
 )

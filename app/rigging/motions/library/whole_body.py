@@ -1,7 +1,7 @@
 """Motions of bodies without joints."""
 
 from app.rigging.motions.curves import EIGHTHS, Curve, Leap, even_curve
-from app.rigging.motions.library.bipeds import LEAPING
+from app.rigging.motions.library.bipeds import HOP_PHASES, LEAPING, LEAPING_FRONTAL
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.squash_stretch import SquashStretch
 from app.texts import _
@@ -31,10 +31,10 @@ HOP = Motion(
         "The body leaves the ground and lands, with both feet at once, or squashed and stretched"
     ),
     seconds=1.0,
-    phases=EIGHTHS,
+    phases=HOP_PHASES,
     templates={
         "biped-side": LEAPING,
-        "biped-front": LEAPING,
+        "biped-front": LEAPING_FRONTAL,
         "anything": SquashStretch(
             stretch=Curve(
                 (
