@@ -5,6 +5,7 @@ Out: PNG frames, animated pictures, sprite sheets, video, models.
 Imports: `app.render`, `app.motion`, `app.storage`.
 """
 
+from app.export.decimation import with_reduced_meshes as with_reduced_meshes
 from app.export.destination import (
     FRAMES as FRAMES,
     PROJECT as PROJECT,
@@ -16,7 +17,6 @@ from app.export.destination import (
 from app.export.frame_renderer import FrameRenderer as FrameRenderer
 from app.export.framing import find_shown_box as find_shown_box, frame_view as frame_view
 from app.export.mesh_export import MeshExport as MeshExport
-from app.export.morph_mesh import with_reduced_meshes as with_reduced_meshes
 from app.export.plan import (
     ExportPlan as ExportPlan,
     plan_export as plan_export,

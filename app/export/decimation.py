@@ -1,16 +1,19 @@
-"""Mesh decimation: fewer triangles, each vertex drawn at most 0.05 px from its place."""
+"""Mesh decimation: fewer triangles for exported meshes, or for frames that differ by 0.05 px."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
 from scipy.spatial import Delaunay
 
+from app.document import Document, Layer
 from app.render.gpu.mesh import border_edges
 from engine.arrays import Booleans, Complexes, Indices, Integers, Singles
 from engine.domain import MeshedDomain
 from engine.domain.meshing.draw_order import copy_draw_order
 from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import as_xy
 
 TOLERANCE: Final = 0.05  # pixels from a vertex to its drawn place, at most
@@ -183,3 +186,16 @@ def _one_in_each_square(points: Complexes, side: float) -> Booleans:
     marked: Booleans = np.zeros(len(points), dtype=np.bool_)
     marked[order[is_first]] = True
     return marked
+
+
+def with_reduced_meshes(document: Document, triangles: int) -> Document:
+    """Return a document whose meshes have at most about this many triangles."""
+    return replace(document, layers=tuple(_lighter(f, triangles) for f in document.layers))
+
+
+def _lighter(layer: Layer, triangles: int) -> Layer:
+    domain = layer.domain
+    if len(domain.mesh.triangles) <= triangles:
+        return layer
+    mesh = triangulate(domain.outline, triangles, holes=domain.loops[1:])
+    return replace(layer, domain=replace(domain, mesh=copy_draw_order(mesh, domain.mesh)))

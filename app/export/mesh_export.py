@@ -1,5 +1,6 @@
 """Exports of meshes without rendering, computed a few steps at a time."""
 
+from collections import Counter
 from collections.abc import Generator, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Final
@@ -139,14 +140,14 @@ class MeshExport:
                     format=format_.label, channels=", ".join(constant)
                 )
             )
-        bent = dict.fromkeys(map(self._document.deform_layer, layers))
-        groups = [each.name for each in bent if self._document.deform_members(each.id)]
-        if groups:
+        shared = Counter(id(shape.motion) for shape in self.meshes)
+        members = [shape.name for shape in self.meshes if shared[id(shape.motion)] > 1]
+        if members:
             found.append(
                 _(
-                    "where parts of {names} cover each other, the {format} paints each member over "
-                    "the ones behind it, so covered ink shows through"
-                ).format(names=join_names(groups), format=format_.label)
+                    "the {format} paints {names} one after the other, so where their mesh covers "
+                    "itself, the covered part shows through"
+                ).format(names=join_names(members), format=format_.label)
             )
         moving = [each.name for each in layers if each.footage is not None]
         if moving:

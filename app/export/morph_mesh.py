@@ -1,18 +1,19 @@
 """A layer for other programs: a light textured mesh with a few morph targets."""
 
 import math
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import groupby
 from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
+from PIL import Image
 
 from app.document import (
     OPACITY,
     CompositeGroup,
     Document,
-    Layer,
     camera_at,
     clip_of,
     composite_layers,
@@ -28,8 +29,6 @@ from app.motion import Evaluator, TriangleOrder, bounding_box
 from app.texts import _
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
 from engine.domain import ClosedCuts, find_closed_cuts
-from engine.domain.meshing.draw_order import copy_draw_order
-from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import Similarity
 from engine.streaming import MorphTargets, build_morph_targets
 
@@ -87,19 +86,6 @@ class _Motion(NamedTuple):
     triangle_orders: tuple[tuple[float, Integers], ...]
     motion: MorphTargets
     node: NodeMotion | None
-
-
-def with_reduced_meshes(document: Document, triangles: int) -> Document:
-    """Return a document whose meshes have at most about this many triangles."""
-    return replace(document, layers=tuple(_lighter(f, triangles) for f in document.layers))
-
-
-def _lighter(layer: Layer, triangles: int) -> Layer:
-    domain = layer.domain
-    if len(domain.mesh.triangles) <= triangles:
-        return layer
-    mesh = triangulate(domain.outline, triangles, holes=domain.loops[1:])
-    return replace(layer, domain=replace(domain, mesh=copy_draw_order(mesh, domain.mesh)))
 
 
 def build_morph_scene(
@@ -190,7 +176,54 @@ def build_morph_scene(
         )
         found.append(shape)
     numbered = {clip.layer.id: number for number, clip in enumerate(clips)}
-    return MorphScene(meshes=tuple(found), parts=composite_layers(document, numbered, first))
+    parts = composite_layers(document, numbered, first)
+    return _merge_members(MorphScene(meshes=tuple(found), parts=parts))
+
+
+def _merge_members(scene: MorphScene) -> MorphScene:
+    """Return the scene with members of deform groups that lie on each other as one mesh each.
+
+    A part of this mesh covers another part with all members. Members that are hidden at times,
+    faded, clipped or blended stay apart.
+    """
+    runs: dict[tuple[int, ...], int] = {}
+
+    def run_key(part: int | CompositeGroup[int]) -> object:
+        if isinstance(part, CompositeGroup):
+            return id(part)
+        shape = scene.meshes[part]
+        if not all(seen for _time, seen in shape.visibility_changes):
+            return part
+        # Members have the same vertices, so their textures have the same places.
+        return id(shape.motion), shape.texture.shape, np.round(shape.uv, 6).tobytes()
+
+    def merged(
+        parts: Sequence[int | CompositeGroup[int]],
+    ) -> tuple[int | CompositeGroup[int], ...]:
+        found: list[int | CompositeGroup[int]] = []
+        for _key, run in groupby(parts, run_key):
+            first, *others = run
+            if isinstance(first, CompositeGroup):
+                found.append(replace(first, parts=merged(first.parts), kept=merged(first.kept)))
+            else:
+                numbers = (first, *(each for each in others if isinstance(each, int)))
+                found.append(runs.setdefault(numbers, len(runs)))
+        return tuple(found)
+
+    parts = merged(scene.parts)
+    meshes = tuple(_flattened([scene.meshes[number] for number in run]) for run in runs)
+    return MorphScene(meshes=meshes, parts=parts)
+
+
+def _flattened(members: Sequence[MorphMesh]) -> MorphMesh:
+    """Return one mesh with the textures of members over each other."""
+    if len(members) == 1:
+        return members[0]
+    texture = Image.fromarray(members[0].texture)
+    for each in members[1:]:
+        texture.alpha_composite(Image.fromarray(each.texture))
+    name = " + ".join(each.name for each in members)
+    return replace(members[0], name=name, texture=bleed_edges(np.asarray(texture)))
 
 
 def _with_peak_opacity(document: Document) -> Document:

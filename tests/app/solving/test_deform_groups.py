@@ -14,11 +14,13 @@ from app.document import (
     OPACITY,
     VISIBILITY,
     Attachment,
+    Channel,
     Document,
     DrawOrder,
     ExportSettings,
     FrameRange,
     Meshing,
+    channel_commands,
     cycle_commands,
     deform_group_commands,
     group_commands,
@@ -407,12 +409,36 @@ def test_channels_of_members_repeat_with_the_cycles_of_their_group(bent):
 
 
 @pytest.mark.parametrize("kind", ["html", "glb"])
-def test_pages_and_models_say_that_they_paint_members_one_by_one(bent, tmp_path, kind):
+def test_pages_and_models_have_members_as_one_mesh(bent, tmp_path, kind):
+    """The texture of this mesh is all members over each other; a hidden one stays apart."""
     document, pictures = bent
-    settings = ExportSettings(format=kind, framing="canvas")
-    request = ExportRequest(out=tmp_path / "a", settings=settings, project="fish")
-    evaluator = Evaluator.exact(document)
     textures = {each: picture.rgba for each, picture in pictures.items()}
-    plan = plan_export(document, request, evaluator)
-    (notice,) = MeshExport(document, textures, evaluator, plan).notices
-    assert notice.startswith("where parts of fish cover each other, the ")
+    settings = ExportSettings(format=kind, framing="canvas")
+    request = ExportRequest(out=tmp_path / f"a.{kind}", settings=settings, project="fish")
+
+    def exported(document):
+        evaluator = Evaluator.exact(document)
+        plan = plan_export(document, request, evaluator)
+        maker = MeshExport(document, textures, evaluator, plan)
+        assert list(maker.run())
+        return maker
+
+    # A bubble lies between these two and the ink.
+    lower, upper = (by_name(document, name) for name in ("colour", "shade"))
+    plain = document
+    for each in (lower, upper):
+        plain = plain.with_layer(replace(each, blend="normal", clipped=False, opacity=1.0))
+    whole = exported(plain)
+    assert [mesh.name for mesh in whole.meshes] == ["sky", "colour + shade", "bubble", "ink"]
+    on, off = (
+        channel_commands.set_key(Channel(VISIBILITY, upper.id), frame, value=value)
+        for frame, value in ((0, True), (5, False))
+    )
+    apart = exported(off(on(plain)))
+    assert [mesh.name for mesh in apart.meshes] == ["sky", "colour", "shade", "bubble", "ink"]
+    (notice,) = (notice for notice in apart.notices if "one after the other" in notice)
+    assert "paints colour, shade, ink one" in notice
+    one, other = (Image.fromarray(mesh.texture) for mesh in apart.meshes[1:3])
+    one.alpha_composite(other)
+    merged = premultiplied(whole.meshes[1].texture)
+    assert_allclose(merged, premultiplied(np.asarray(one)), atol=1)
