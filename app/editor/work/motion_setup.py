@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self
 
-from app.document import AppliedMotion, Document, Layer
+from app.document import AppliedMotion, Document, Layer, clip_of
+from app.motion import InbetweenCache, SceneFrame, evaluate_layer
 from app.rigging import MOTIONS, BodyKind, Motion, Parameters, find_kind, other_side
 from app.solving import MotionSolve
 from app.texts import _
@@ -82,14 +83,34 @@ class MotionJob:
         The layer must still be this one when the motion is ready.
     base : Document
         The document without the motion that is replaced.
-    giving : MotionSolve, optional
+    solve : MotionSolve, optional
         Progress; None before the first step.
+    preview : InbetweenCache, optional
+        With the mesh of the layer as it is solved, on which solved poses are shown.
     """
 
     setup: MotionSetup
     before: Layer
     base: Document
     solve: MotionSolve | None = None
+    preview: InbetweenCache | None = None
+
+    def show_pose(self, displayed: SceneFrame) -> SceneFrame:
+        """Return a displayed frame with the pose that was solved last, and nothing else changed."""
+        solve, preview, layer = self.solve, self.preview, self.before.id
+        if solve is None or preview is None or not solve.poses or layer not in displayed.layers:
+            return displayed
+        clip = clip_of(solve.document, layer)
+        posed = evaluate_layer(clip, displayed.frame, solve.poses[-1], [preview], None)
+        layers = dict(displayed.layers)
+        for identity, frame in displayed.layers.items():
+            own = displayed.document.layer(identity)
+            if displayed.document.deform_layer(own).id == layer:
+                # The document has neither the pose nor the handles and bones of the motion.
+                layers[identity] = replace(
+                    posed, clip=frame.clip, pose=None, placement=frame.placement
+                )
+        return replace(displayed, layers=layers)
 
     @property
     def progress(self) -> float:

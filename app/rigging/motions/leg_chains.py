@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -65,9 +65,19 @@ class LimbMotion(MotionTemplate):
         """Whether its steps move the body forward."""
         return self.gait is not None and self.gait.stride > 0
 
-    @property
-    def has_trunk(self) -> bool:
-        return True
+    def part_parameters(self, kind: str, joints: Collection[str]) -> frozenset[str]:
+        moved = self.turns.keys() | self.growth.keys() | set(map(without_side, self.aims))
+        if kind != "biped-front":
+            moved |= self.leans.keys()
+        stepping = {} if self.gait is None else dict(self.gait.landings)
+        arms = {without_side(name) for name in joints if other_side(name) != name}
+        is_changed = {
+            "lean": kind != "biped-front",
+            "head_delay": bool({"neck", "head"} & moved & set(joints)),
+            "arm_delay": bool({"elbow", "hand"} & moved & arms) and "hand.L" not in stepping,
+            "tail_delay": "tail" in moved and "tail" in joints,
+        }
+        return frozenset(name for name, is_so in is_changed.items() if is_so)
 
     def instantiate(
         self, body: Body, parameters: Parameters, timing: Timing = EVEN

@@ -1,7 +1,7 @@
 """Motions over a cycle, independent of the body."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import NamedTuple
@@ -97,10 +97,10 @@ class MotionTemplate(ABC):
         """Whether its steps move the body forward."""
         return False
 
-    @property
-    def has_trunk(self) -> bool:
-        """Whether it moves a trunk, which may lean, with parts that may be delayed."""
-        return False
+    def part_parameters(self, kind: str, joints: Collection[str]) -> frozenset[str]:
+        """Return which of `lean` and the delays change something in a body with these joints."""
+        del kind, joints
+        return frozenset()
 
     @abstractmethod
     def instantiate(

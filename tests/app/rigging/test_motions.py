@@ -297,3 +297,19 @@ def test_legs_that_are_one_above_their_crotch_part_before_they_close():
     drawn_apart = abs(rest.joints["foot.L"].real - rest.joints["foot.R"].real)
     nearest = np.abs(tight["foot.L"].real - tight["foot.R"].real).min()
     assert nearest > drawn_apart - 0.05 * SIZE
+
+
+@each_motion
+def test_parameters_of_parts_are_offered_where_they_change_the_motion(name, kind):
+    rest, shares = body(kind), np.arange(8) / 8
+    offered = MOTIONS[name].template_for(kind).part_parameters(kind, rest.joints)
+    usual = places(name, kind, shares)
+    for parameter, value in (
+        ("lean", 20.0),
+        ("head_delay", 0.2),
+        ("arm_delay", 0.2),
+        ("tail_delay", 0.2),
+    ):
+        other = places(name, kind, shares, Parameters(**{parameter: value}))
+        moved = max(np.abs(other[joint] - way).max() for joint, way in usual.items())
+        assert (moved > 1e-6) == (parameter in offered), parameter

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from overlapping_legs import draw_person
 from silhouettes import paint
 
@@ -308,6 +309,36 @@ def test_another_motion_follows(window, ghost):
     assert is_motion_unedited(ghost.layer, first)
     assert second.first == given.last < second.start
     assert ghost.document.frames.last == second.last
+
+
+@pytest.mark.parametrize("parts", [False, True])
+def test_each_solved_pose_is_shown_until_escape_cancels_the_preset(window, tmp_path, parts):
+    if parts:
+        draw_person("lines").save(tmp_path / "person.png")
+    project = window.open(tmp_path / "person.png" if parts else paint(window.folder, "child"))
+    before, at_rest = project.document, project.runtimes.displayed
+    preset_setup.begin_motion_setup(window.session)
+    preset_setup.set_motion_parameters(window.session, size=0.3, speed=4.0)
+    apply_motion.apply_motion_preset(window.session)
+    window.until(lambda: project.motion_job.solve is not None and project.motion_job.solve.poses)
+    with window.session.jobs.held():
+        window.frames(3)
+        solve = project.motion_job.solve
+        assert solve.parted == parts
+        shown = project.layer_runtime.shown
+        vertices = shown.mesh.domain.mesh.vertices
+        expected = solve.rig.layer.map_of(solve.poses[-1])(vertices)
+        assert_allclose(shown.positions, expected, atol=1e-2)
+        assert np.abs(shown.positions - vertices).max() > 1
+        assert project.document is before
+        window.run(lambda robot: robot.key_press(int(window.Key.escape)))
+        window.frames(3)
+        assert project.motion_job is None
+        assert project.runtimes.displayed.layers.keys() == at_rest.layers.keys()
+        assert_allclose(
+            project.layer_runtime.shown.positions, next(iter(at_rest.layers.values())).positions
+        )
+    assert project.document is before
 
 
 @pytest.mark.parametrize("how", ["escape", "undo"])

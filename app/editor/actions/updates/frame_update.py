@@ -190,6 +190,8 @@ def _show(session: Session, project: Project) -> None:
     displayed = project.evaluator.evaluate(
         document, frame, "display", poses=poses, is_coarse=is_coarse
     )
+    if project.motion_job is not None and project.visible_drag is None:
+        displayed = project.motion_job.show_pose(displayed)
     # Without transforms by parents, which belong to the layers' own methods. An unkeyed pose is the
     # same in both methods.
     others = {layer: each.comparison for layer, each in runtimes.items() if each.comparison}

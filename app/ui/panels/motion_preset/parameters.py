@@ -1,5 +1,7 @@
 """Sliders of a motion preset's parameters, in a draft and of an applied motion."""
 
+from collections.abc import Collection
+
 from app.document import AppliedMotion
 from app.editor import Action, Project, do
 from app.editor.actions.posing.motion_presets import apply_motion
@@ -18,9 +20,12 @@ SHARES = Scale(left=0.0, right=0.99)
 
 
 def draw_parameter_sliders(
-    look: Look, now: Parameters, template: MotionTemplate
+    look: Look, now: Parameters, template: MotionTemplate, offered: Collection[str]
 ) -> tuple[dict[str, float], bool]:
-    """Draw the sliders; return the changed parameter, and whether the pointer let it go."""
+    """Draw the sliders; return the changed parameter, and whether the pointer let it go.
+
+    `offered` are the parameters of single parts that change something.
+    """
     steps = template.can_travel
     size = _("Stride") if steps else _("Size")
     height = _("Height") if steps else _("Energy")
@@ -30,14 +35,14 @@ def draw_parameter_sliders(
         ("energy", height, ENERGIES, "%.2f ×", _("How much the body bounces and sways")),
         ("start", _("Start"), SHARES, "%.2f", _("Where in its cycle the motion begins")),
     ]
-    if template.has_trunk:
-        hint = _("By which share of the cycle this part is later")
-        rows += [
-            ("lean", _("Lean"), LEANS, "%.0f°", _("How far the trunk leans forwards")),
-            ("head_delay", _("Head delay"), DELAYS, "%.2f", hint),
-            ("arm_delay", _("Arm delay"), DELAYS, "%.2f", hint),
-            ("tail_delay", _("Tail delay"), DELAYS, "%.2f", hint),
-        ]
+    hint = _("By which share of the cycle this part is later")
+    parts = [
+        ("lean", _("Lean"), LEANS, "%.0f°", _("How far the trunk leans forwards")),
+        ("head_delay", _("Head delay"), DELAYS, "%.2f", hint),
+        ("arm_delay", _("Arm delay"), DELAYS, "%.2f", hint),
+        ("tail_delay", _("Tail delay"), DELAYS, "%.2f", hint),
+    ]
+    rows += [row for row in parts if row[0] in offered]
     changed, is_final = dict[str, float](), False
     for name, text, scale, form, hint in rows:
         label(look, text)
@@ -52,7 +57,8 @@ def draw_applied_parameters(look: Look, project: Project, given: AppliedMotion) 
     if given.motion not in MOTIONS:
         return []
     template = MOTIONS[given.motion].template_for(given.kind)
-    changed, is_final = draw_parameter_sliders(look, given.parameters, template)
+    offered = template.part_parameters(given.kind, given.joints)
+    changed, is_final = draw_parameter_sliders(look, given.parameters, template, offered)
     if not changed or not is_final:
         return []
     change = apply_motion.change_applied_motion

@@ -184,7 +184,9 @@ def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
     heading(look, _("Settings"))
     actions: list[Action] = []
     now = draft.parameters
-    changed, _is_final = draw_parameter_sliders(look, now, draft.preset.template_for(draft.kind))
+    template = draft.preset.template_for(draft.kind)
+    offered = template.part_parameters(draft.kind, draft.joints)
+    changed, _is_final = draw_parameter_sliders(look, now, template, offered)
     if changed:
         actions.append(do(preset_setup.set_motion_parameters, **changed))
     label(look, _("Repeats"))

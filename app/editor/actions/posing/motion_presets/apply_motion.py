@@ -17,8 +17,10 @@ from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.editor.work.motion_setup import MotionJob, MotionSetup
 from app.editor.work.pending_change import PendingChange
+from app.motion import DeformMesh, InbetweenCache
 from app.solving import PARTED, MotionRequest, MotionSolve, start_motion_solve, step_motion_solve
 from app.texts import _, ngettext
+from engine.arrays import Bytes
 
 GIVING = JobKind(_("Applying the motion"), _("The motion was not applied"), "hand")
 MOST_NAMED = 3  # most unreached joints that a notice names
@@ -50,7 +52,14 @@ def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
     task = MotionJob(setup=draft, before=before, base=base)
     order = _motion_request(draft, before)
     rgba = project.runtimes.layers[before.id].picture.rgba
-    _step(session, project, task, partial(start_motion_solve, base, before.id, order, rgba))
+    _step(session, project, task, partial(_prepare, task, order, rgba))
+
+
+def _prepare(task: MotionJob, order: MotionRequest, rgba: Bytes) -> MotionJob:
+    """Return a job ready for its first pose, with the mesh that shows poses; on the worker."""
+    solve = start_motion_solve(task.base, task.before.id, order, rgba)
+    mesh = DeformMesh.coarse(solve.rig.layer.domain).prepared()
+    return replace(task, solve=solve, preview=InbetweenCache(mesh=mesh))
 
 
 def _motion_request(draft: MotionSetup, before: Layer) -> MotionRequest:
@@ -98,7 +107,7 @@ def _without(document: Document, draft: MotionSetup) -> Document:
 
 
 def _step(
-    session: Session, project: Project, task: MotionJob, work: Callable[[], MotionSolve]
+    session: Session, project: Project, task: MotionJob, work: Callable[[], MotionJob]
 ) -> None:
     """Run one step on the worker."""
 
@@ -106,8 +115,8 @@ def _step(
         _reopen(session, project, task.setup)
         report_failure(session, GIVING.complaint, error)
 
-    def arrived(giving: MotionSolve) -> None:
-        _go_on(session, project, replace(task, solve=giving))
+    def arrived(task: MotionJob) -> None:
+        _go_on(session, project, task)
 
     change = PendingChange(label=GIVING.label, motion_job=task)
     pending_changes.begin_pending_change(
@@ -124,7 +133,8 @@ def _reopen(session: Session, project: Project, draft: MotionSetup) -> None:
 def _go_on(session: Session, project: Project, task: MotionJob) -> None:
     """Take the next step, or write the motion to the layer."""
     if task.solve is not None and not task.solve.is_over:
-        _step(session, project, task, partial(step_motion_solve, task.solve))
+        solve = task.solve
+        _step(session, project, task, lambda: replace(task, solve=step_motion_solve(solve)))
     elif task.solve is not None:
         _accept(session, project, task, task.solve)
 
