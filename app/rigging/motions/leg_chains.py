@@ -169,13 +169,15 @@ class _LimbInstance(MotionInstance):
         """Return the rotation of each joint's bone against its parent bone, in radians.
 
         From the side the trunk is one rigid part, from the hips to the root of the neck: hips and
-        chest turn together, and the neck's rotation is that of the head.
+        chest turn together, and the neck's rotation is that of the head. Without a neck a head is a
+        part of the trunk while legs step, since its rotation would bend the whole body.
         """
         own = {name: self._turn(name, phase) for name in self.body.joints}
         if self.body.kind.is_side_view:
             own[self.hips] += own.pop("chest", 0.0)
             neck = own.pop("neck", 0.0)
-            own["head"] = own.get("head", 0.0) + neck
+            is_free = "neck" in self.body.joints or not self.steps.gait.stride
+            own["head"] = own.get("head", 0.0) + neck if is_free else 0.0
         return dict.fromkeys(self.body.joints, 0.0) | own
 
     def _turn(self, name: str, phase: float) -> float:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from app.document import AppliedMotion, Layer, Pose, Spring, Target
+from app.document import AppliedMotion, Layer, Limbs, Pose, Spring, Target
 from app.rigging import Body, Performance, Timing
 from app.solving.motion_preset.motion_request import MotionRequest
 from engine.maps import Bounds
@@ -112,3 +112,14 @@ def with_joint_weights(layer: Layer, joints: frozenset[int], feet: frozenset[int
         sigma_b=layer.bounds.sigma_b**SPENT,
     )
     return replace(layer, handles=handles, bounds=inside, tracks=(), springs=(*springs, *carried))
+
+
+def with_planned_roots(pose: Pose, limbs: Limbs | None, moment: JointKeyPose) -> Pose:
+    """Return a key's pose with the roots of limbs where the preset has them.
+
+    The pose knows where their legs pulled them. From the planned places on, the body moves as a
+    whole to the next key, and keeps its shape.
+    """
+    roots = {limb.chain.root for limb in limbs.limbs} if limbs is not None else set()
+    planned = {root: moment.targets[root] for root in roots if root in moment.targets}
+    return replace(pose, targets={**pose.targets, **planned})

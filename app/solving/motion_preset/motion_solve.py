@@ -30,6 +30,7 @@ from app.solving.motion_preset.key_poses import (
     find_raised_arms,
     plan_performance,
     with_joint_weights,
+    with_planned_roots,
 )
 from app.solving.motion_preset.limb_cuts import PARTED, find_limb_cuts, part_limbs
 from app.solving.motion_preset.misses import describe_misses
@@ -242,7 +243,10 @@ def step_motion_solve(giving: MotionSolve) -> MotionSolve:
         return _smaller(giving)
     moment = giving.key_poses[len(giving.poses)]
     layer = giving.rig.layer
-    begin = giving.poses[-1] if giving.poses else rest_pose(layer.domain, layer.handles)
+    begin = rest_pose(layer.domain, layer.handles)
+    if giving.poses:
+        before = giving.key_poses[len(giving.poses) - 1]
+        begin = with_planned_roots(giving.poses[-1], giving.rig.limbs, before)
     pose = solve_key_pose(giving.rig, begin, moment)
     names = {identity: name for name, identity in giving.applied.joints.items()}
     short = dict(giving.target_errors)
