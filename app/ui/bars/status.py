@@ -22,6 +22,7 @@ SLOW = 0.3  # seconds after which a job is reported; reports of shorter jobs wou
 ENDLESS = 5.0  # seconds after which a job can be cancelled
 SLOWED, STOPPED = 0.5, 0.05  # of the velocity at a key: below these, the status bar reports it
 MOST_LISTED = 3  # keys
+MOST_SHOWN = 0.99  # finished part of a running job
 # Jobs that bring the in-betweens up to date: nobody needs to tell them apart.
 UPDATES = (
     *(stage_jobs.GLIMPSING, stage_jobs.SKETCHING, stage_jobs.REFINING, stage_jobs.STREAMING),
@@ -116,8 +117,10 @@ def _running(session: Session, waiting: str, slow: Sequence[JobKind]) -> StatusS
 def _name_job(session: Session, name: str, kind: JobKind) -> str:
     """Return a name with the finished part of a job of this kind, if it is known."""
     share = session.jobs.share_of(kind)
-    text = _("{job}…") if share is None else _("{job}… {share:.0%}")
-    return text.format(job=name, share=share)
+    if share is None:
+        return _("{job}…").format(job=name)
+    # A job that runs is not complete.
+    return _("{job}… {share:.0%}").format(job=name, share=min(share, MOST_SHOWN))
 
 
 def _describe_moving(project: Project) -> str:

@@ -223,6 +223,13 @@ def test_an_export_that_is_prepared_tells_how_far_it_is_and_esc_cancels_it(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.usefixtures("loose")
+def test_what_runs_is_never_told_to_be_complete(window, monkeypatch):
+    monkeypatch.setattr(exporting, "is_export_under_way", lambda _session: True)
+    monkeypatch.setattr(window.session.jobs, "share_of", lambda _kind: 0.999)
+    assert find_state(window.session).text == "Preparing the export… 99%"
+
+
 def test_an_export_tells_what_it_waits_for(window, loose, tmp_path):
     change = PendingChange(label="Solving keys again")
     loose.pending.add(change)
