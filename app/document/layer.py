@@ -532,7 +532,7 @@ class Layer:
             require(
                 bool(is_inside),
                 N_(
-                    "{what} at ({x:g}, {y:g}) lies outside the shape; move it onto "
+                    "{what} at ({x:.0f}, {y:.0f}) lies outside the shape; move it onto "
                     "the shape or remove it."
                 ),
                 what=what,

@@ -118,7 +118,7 @@ def _on_drawing(layer: Layer, joints: Mapping[str, complex]) -> dict[str, comple
         if not is_on_it:
             raise LissomError(
                 _(
-                    "the joint {name!r} at ({x:g}, {y:g}) is not on the drawing; move it onto "
+                    "the joint {name!r} at ({x:.0f}, {y:.0f}) is not on the drawing; move it onto "
                     "the drawing"
                 ).format(name=name, x=place.real, y=place.imag)
             )

@@ -259,6 +259,8 @@ def test_rig_this_makes_handles_and_bones_in_one_step(window):
     names = {handle.id: handle.name for handle in layer.handles}
     bones = {tuple(names[end] for end in bone.ends) for bone in layer.bones}
     assert {("hip.L", "knee.L"), ("knee.L", "foot.L"), ("elbow.R", "hand.R")} <= bones
+    rigging.rig_layer(window.session)
+    assert window.session.notices.toasts[-1].text == "child has this rig already."
     editing.undo(window.session)
     assert project.document is before
 

@@ -65,10 +65,12 @@ def _rig(session: Session, project: Project, draft: MotionSetup) -> None:
     project.history.do(Command(_("Rig this"), rigged))
     made = project.document.layer(layer.id)
     bones = len(made.bones) - len(layer.bones)
-    text = ngettext(
-        "{layer} has a rig now: {count} bone more.",
-        "{layer} has a rig now: {count} bones more.",
-        bones,
-    )
+    text = _("{layer} has this rig already.")
+    if bones or len(made.handles) > len(layer.handles):
+        text = ngettext(
+            "{layer} has a rig now: {count} bone more.",
+            "{layer} has a rig now: {count} bones more.",
+            bones,
+        )
     text = text.format(layer=made.name, count=bones)
     session.notices.show(text if cuts is None else f"{text} {_(PARTED)}")
