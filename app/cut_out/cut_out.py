@@ -12,6 +12,7 @@ from engine.errors import EngineError
 
 BackgroundColour = tuple[int, int, int]  # red, green, blue, each 0 to 255
 Enclosed = Literal["auto", "keep", "remove"]
+CoveredSide = Literal["none", "left", "right"]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 0.5, 4096.0  # pixels of a stroke
 FARTHEST_STROKE = 1e5  # pixels: farthest point of a stroke from the picture's corner
@@ -97,13 +98,30 @@ class Stroke:
 class CutLine:
     """A line along which the knife separates touching parts.
 
-    `points` (n,), at least two, are in pixels of the picture, y up.
+    Parameters
+    ----------
+    points : complex128, shape (n,)
+        In pixels of the picture, y up; at least two.
+    covered : {"none", "left", "right"}
+        The side, along the line, that the other side covers: a limb behind another one. It
+        continues under the other side.
+    covered_from : int
+        Index of the first of the points between which the side is covered, up to the last one.
     """
 
     points: Complexes
+    covered: CoveredSide = "none"
+    covered_from: int = 0
 
     def __post_init__(self) -> None:
         points = as_points(self.points, "knife's line", at_least=2)
+        require_word(self.covered, ("none", "left", "right"), "The covered side of a line")
+        if not 0 <= self.covered_from <= len(points) - 2:
+            raise EngineError(
+                "A knife's line of {count} points cannot be covered from point {point} on.",
+                count=len(points),
+                point=self.covered_from,
+            )
         _require_near(points, "The knife's line")
         object.__setattr__(self, "points", points)
 
@@ -166,6 +184,14 @@ class CutOut:
         points = sum(len(line.points) for line in self.lines)
         if points > MOST_STROKE_POINTS or sum(stroke.rows for stroke in self.strokes) > MOST_ROWS:
             raise EngineError("There are too many strokes; save the mask and load it instead.")
+
+    def covered_lines(self, corner: complex) -> list[Complexes]:
+        """Return the cut lines with a covered side, which is on their left, on the canvas."""
+        return [
+            corner + line.points[line.covered_from :][:: 1 if line.covered == "left" else -1]
+            for line in self.cut_lines
+            if line.covered != "none"
+        ]
 
     @property
     def is_by_hand(self) -> bool:

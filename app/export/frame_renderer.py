@@ -126,7 +126,7 @@ class FrameRenderer:
                     texture = textures[shown] = GpuPicture(context, pictures[layer.id])
                     owned.callback(texture.release)
                 by = bent[layer.id]
-                seam = find_closed_cuts(by.domain)
+                seam = find_closed_cuts(by.domain, by.cut_out.covered_lines(by.corner))
                 gpu_mesh = GpuMesh(
                     programs, texture, rest=rest, triangles=mesh.triangles, seam=seam
                 )

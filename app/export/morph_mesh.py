@@ -21,11 +21,11 @@ from app.document import (
     layers_in_draw_order,
 )
 from app.errors import LissomError
-from app.export.alpha_bleed import bleed_edges
+from app.export.alpha_bleed import bleed_edges, cut_texture
 from app.export.node_motion import SCALE, NodeMotion, build_node_motion
 from app.export.plan import ExportPlan
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Evaluator, TriangleOrder, bounding_box
+from app.motion import Evaluator, TriangleOrder
 from app.texts import _
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
 from engine.domain import ClosedCuts, find_closed_cuts
@@ -36,7 +36,6 @@ Value = TypeVar("Value")
 
 DEFAULT_TOLERANCE: Final = 0.5  # pixels
 MOST_TARGETS: Final = 8  # glTF viewers must support only this many
-_BORDER: Final = 2  # transparent pixels around a texture: readers repeat its edge
 _CLOSE: Final = 0.5  # frames between the first samples
 OF_NODE: Final = 0.1  # share of the tolerance for the motion of the whole layer
 
@@ -131,8 +130,12 @@ def build_morph_scene(
     moved: dict[int, _Motion] = {}  # by layer; members of a deform group move alike
     for index, clip in enumerate(clips):
         layer, bent = clip.layer, document.deform_layer(clip.layer)
-        mesh, seam = bent.domain.mesh, find_closed_cuts(bent.domain)
+        mesh, seam = (
+            bent.domain.mesh,
+            find_closed_cuts(bent.domain, bent.cut_out.covered_lines(bent.corner)),
+        )
         places = mesh.vertices if seam is None else seam.close_cuts(mesh.vertices)
+        shown = mesh.vertices if seam is None else seam.find_painted(mesh.vertices)
         if bent.id not in moved:
             allowed = DEFAULT_TOLERANCE if tolerance is None else tolerance
             node = build_node_motion(
@@ -155,11 +158,17 @@ def build_morph_scene(
             order, own = TriangleOrder(mesh), clip_of(document, bent.id)
             orders = [(frame, order.triangles(own, frame)) for frame in numbers]
             moved[bent.id] = _Motion(
-                tuple(((n - first) / plan.timeline_fps, each) for n, each in _changes(orders)),
+                tuple(
+                    (
+                        (n - first) / plan.timeline_fps,
+                        each if seam is None else seam.order_under(each),
+                    )
+                    for n, each in _changes(orders)
+                ),
                 replace(motion, times=freeze((motion.times - first) / plan.timeline_fps)),
                 node and replace(node, times=freeze((node.times - first) / plan.timeline_fps)),
             )
-        texture, uv = _cut_out(pictures[layer.id], places - layer.corner)
+        texture, uv = cut_texture(pictures[layer.id], shown - layer.corner)
         visibility = [(frame, is_visible(document, layer, frame)) for frame in numbers]
         shape = MorphMesh(
             name=plan.out.stem if len(document.layers) == 1 else layer.name,
@@ -280,21 +289,3 @@ def _share(
             motion: MorphTargets = stop.value
             return motion
         yield (index + (frame - first) / max(last - first, 1)) / count
-
-
-def _cut_out(picture: Bytes, vertices: Complexes) -> tuple[Bytes, Floats]:
-    """Return the part of a picture inside a mesh, with a border, and the vertices' uv in it.
-
-    The vertices are in pixels from the lower left corner of the picture.
-    """
-    height, width, _ = picture.shape
-    box = bounding_box(vertices)
-    left, bottom = (math.floor(side) - _BORDER for side in (box.lower.real, box.lower.imag))
-    right, top = (math.ceil(side) + _BORDER for side in (box.upper.real, box.upper.imag))
-    texture = np.zeros((top - bottom, right - left, 4), dtype=np.uint8)
-    # The mesh may extend beyond the picture.
-    x0, x1, y0, y1 = max(left, 0), min(right, width), max(bottom, 0), min(top, height)
-    texture[top - y1 : top - y0, x0 - left : x1 - left] = picture[height - y1 : height - y0, x0:x1]
-    offsets = vertices - complex(left, bottom)
-    uv = np.column_stack([offsets.real / (right - left), offsets.imag / (top - bottom)])
-    return texture, freeze(uv)

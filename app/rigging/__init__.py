@@ -14,7 +14,10 @@ from app.rigging.anatomy.lines.arm_lines import (
     with_shoulders as with_shoulders,
 )
 from app.rigging.anatomy.lines.leg_tracks import TrackedLeg as TrackedLeg, track_legs as track_legs
-from app.rigging.anatomy.lines.limb_lines import find_limb_line as find_limb_line
+from app.rigging.anatomy.lines.limb_lines import (
+    LimbLine as LimbLine,
+    find_limb_line as find_limb_line,
+)
 from app.rigging.anatomy.lines.near_limbs import (
     NearLimb as NearLimb,
     guess_near_limbs as guess_near_limbs,

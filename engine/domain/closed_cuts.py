@@ -4,7 +4,8 @@ A mesh ends at the outline, so a slit would show as a line. Instead, the vertice
 painted at the places where the sides meet, mapped by a neighbouring triangle.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.domain.build import MeshedDomain
+from engine.domain.underlays import Underlay, find_underlay, find_weights
 from engine.geometry import ON_OUTLINE, diameter, loop_ends
 
 FARTHEST = 8.0  # sizes of a triangle beyond it, as far as it is extrapolated
@@ -30,21 +32,50 @@ class ClosedCuts:
     weights : float64, shape (s, 3)
         Barycentric coordinates of the painted place in this triangle. The place is outside, so that
         one coordinate is negative.
+    underlay : Underlay, optional
+        Material of covered sides under the others: e further vertices.
     """
 
     vertices: Indices
     corners: Integers
     weights: Floats
+    underlay: Underlay | None = None
+
+    @property
+    def further_vertices(self) -> int:
+        return 0 if self.underlay is None else len(self.underlay.vertices)
 
     def close_cuts(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """Return values (v, …) that are linear in the vertices' places, with slits closed."""
+        """Return values (v + e, …) that are linear in the vertices' places, with slits closed."""
+        return self._closed(values, [] if self.underlay is None else [self.underlay.mirror(values)])
+
+    def find_painted(self, places: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return the places (v + e, …) of the picture that the vertices show."""
+        return self._closed(places, [] if self.underlay is None else [self.underlay.paint(places)])
+
+    def repeat_values(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return values (v + e, …): further vertices have those of their vertices on the slit."""
+        further = [] if self.underlay is None else [values[self.underlay.vertices]]
+        return np.concatenate([values, *further])
+
+    def order_under(self, triangles: Integers) -> Integers:
+        """Return triangles with those of the underlay before them, so that they cover it."""
+        under = [] if self.underlay is None else [self.underlay.triangles]
+        return np.concatenate([*under, triangles])
+
+    def _closed(
+        self, values: npt.NDArray[Any], further: Sequence[npt.NDArray[Any]]
+    ) -> npt.NDArray[Any]:
         result = values.copy()
         result[self.vertices] = np.einsum("sc,sc...->s...", self.weights, values[self.corners])
-        return result
+        return np.concatenate([result, *further])
 
 
-def find_closed_cuts(domain: MeshedDomain) -> ClosedCuts | None:
-    """Return the closed slits of a domain's mesh; None without slits."""
+def find_closed_cuts(domain: MeshedDomain, covered: Sequence[Complexes] = ()) -> ClosedCuts | None:
+    """Return the closed slits of a domain's mesh; None without slits.
+
+    `covered` are the lines of slits with a covered side, which is on their left.
+    """
     if domain.closed is None:
         return None
     corners = np.concatenate(domain.loops)
@@ -52,7 +83,10 @@ def find_closed_cuts(domain: MeshedDomain) -> ClosedCuts | None:
     on_side, beside = _on_sides(domain, corners, shifts)
     moved = np.concatenate([np.flatnonzero(shifts), on_side])
     places = domain.mesh.vertices[moved] + np.concatenate([shifts[shifts != 0], beside])
-    return _beside(domain, moved, places)
+    found = _beside(domain, moved, places)
+    if not covered:
+        return found
+    return replace(found, underlay=find_underlay(domain, domain.mesh, moved, covered))
 
 
 def _on_sides(
@@ -90,7 +124,7 @@ def _beside(domain: MeshedDomain, moved: Indices, places: Complexes) -> ClosedCu
     number[moved] = np.arange(len(moved))
     rows, columns = np.nonzero(number[triangles] >= 0)
     index, around = number[triangles[rows, columns]], triangles[rows]
-    weights = _weights(vertices[around], places[index])
+    weights = find_weights(vertices[around], places[index])
     # Of the triangles at a vertex, choose the one with the least extrapolation.
     order = np.lexsort((-weights.min(axis=1), index))
     chosen = order[np.flatnonzero(np.diff(index[order], prepend=-1))]
@@ -104,13 +138,5 @@ def _beside(domain: MeshedDomain, moved: Indices, places: Complexes) -> ClosedCu
         far = np.abs(middles - vertices[moved[row]])
         far[areas < np.abs(places[row] - vertices[moved[row]]) ** 2 / 4] = np.inf
         corners[row] = triangles[int(far.argmin())]
-        weights[row] = _weights(vertices[corners[row : row + 1]], places[row : row + 1])[0]
+        weights[row] = find_weights(vertices[corners[row : row + 1]], places[row : row + 1])[0]
     return ClosedCuts(vertices=moved, corners=corners, weights=weights)
-
-
-def _weights(corners: Complexes, places: Complexes) -> Floats:
-    """Return the barycentric coordinates (n, 3) of places (n,) in triangles (n, 3)."""
-    a, b, c = corners.T
-    area, away = ((b - a).conj() * (c - a)).imag, places - a
-    second, third = (away.conj() * (c - a)).imag / area, ((b - a).conj() * away).imag / area
-    return np.column_stack([1 - second - third, second, third])

@@ -110,11 +110,11 @@ class GpuMesh:
     ) -> None:
         self.programs = programs
         self.picture = picture
-        self.count = len(rest)
         self.seam = seam
         self.first = complex(rest[0])  # the first vertex, which tells pictures' corners apart
         if seam is not None:
-            rest = seam.close_cuts(rest)
+            rest = seam.find_painted(rest)
+        self.count = len(rest)
         context = programs.context
         width, height = picture.size
         uv = np.column_stack([rest.real / width, rest.imag / height])
@@ -140,12 +140,19 @@ class PaintingOrder:
     """Owner of the triangles of a pose, in the order in which they are painted."""
 
     def __init__(self, mesh: GpuMesh) -> None:
+        self._seam = mesh.seam
         self.triangles = mesh.triangles
-        self.buffer = mesh.programs.context.buffer(_indices(mesh.triangles))
+        painted = self._painted(mesh.triangles)
+        self.count = painted.size  # indices that are drawn
+        self.buffer = mesh.programs.context.buffer(_indices(painted))
 
     def write(self, triangles: Integers) -> None:
-        self.buffer.write(_indices(triangles))
-        self.triangles = triangles
+        painted = self._painted(triangles)
+        self.buffer.write(_indices(painted))
+        self.triangles, self.count = triangles, painted.size
+
+    def _painted(self, triangles: Integers) -> Integers:
+        return triangles if self._seam is None else self._seam.order_under(triangles)
 
 
 class PosedMesh:
@@ -187,6 +194,8 @@ class PosedMesh:
 
     def write_heat(self, values: Singles) -> None:
         """Upload the quantity (v,) of the heat map."""
+        if self._mesh.seam is not None:
+            values = self._mesh.seam.repeat_values(values)
         if values.shape != (self._mesh.count,):
             text = _("a heat map needs {needed} values, not {shape}")
             raise LissomError(text.format(needed=self._mesh.count, shape=values.shape))
@@ -214,7 +223,7 @@ class PosedMesh:
     def draw(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the triangles with a mesh program: its files, and the source's shader."""
         binding = self._bound(files, self.order.buffer, uniforms)
-        binding.render(moderngl.TRIANGLES, vertices=self.order.triangles.size)
+        binding.render(moderngl.TRIANGLES, vertices=self.order.count)
 
     def draw_border(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:
         """Draw the edges of the border with a program of their own."""

@@ -26,7 +26,7 @@ class SeriesBuffer(VertexSource):
     Parameters
     ----------
     count : int
-        Number of vertices, v.
+        Number of drawn vertices: those of the series, and the further ones of the seam.
     rows : int
         Largest number of rows of a piece.
     seam : ClosedCuts, optional
@@ -70,7 +70,8 @@ class SeriesBuffer(VertexSource):
         self._weights.ravel()[: len(weights)] = weights
 
     def _upload(self, piece: SeriesPiece) -> None:
-        count, rows = self._count, len(piece.rows)
+        further = 0 if self._seam is None else self._seam.further_vertices
+        count, rows = self._count - further, len(piece.rows)
         if piece.rows.shape[1] != 2 * count or rows > 2 * self._pairs:
             raise LissomError(
                 _(SERIES_PIECE).format(

@@ -2,22 +2,28 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, product
 from typing import NamedTuple
 
 import numpy as np
 
-from app.cut_out import CutLine, CutOut, build_picture_domain
+from app.cut_out import CutLine, CutOut, build_picture_domain, subject_mask, texture
 from app.document import Document, Layer
-from app.rigging import Body, find_arm_line, find_limb_line, near_side, other_side
+from app.rigging import Body, LimbLine, find_arm_line, find_limb_line, near_side, other_side
 from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.texts import N_
 from engine.arrays import Bytes, Complexes, Floats
 from engine.domain import CUT_WIDTH
 from engine.errors import EngineError
-from engine.geometry import box_diagonal, distance_to_segments
+from engine.geometry import Domain, box_diagonal, distance_to_boundary, distance_to_segments
 
 PARTED = N_("Limbs touch in the drawing. They were parted along their drawn lines.")
+# Lines that leave no domain are tried shorter: shares of them above the crotch.
+SHARES = (1.0, 0.9, 0.75, 0.6)
+# Of the diagonal: the knife extends lines that end this near to the outline.
+MOUTH = 0.012
+FEWEST = 8  # points of a line
+LEAST = 8.0  # widths of a slit: length of a line above the crotch that covers a limb
 BESIDE = 2.0  # widths of a slit: a handle nearer to a knife line may be inside the slit
 
 
@@ -37,16 +43,19 @@ def find_limb_cuts(
     No line passes through a handle, and each line leaves a domain.
     """
     loops, corner = layer.domain.loops, layer.corner
-    found = [find_limb_line(loops, near, far, rgba, corner) for near, far in _pairs(body)]
+    shown = texture(rgba, subject_mask(rgba, layer.cut_out))
+    found = [find_limb_line(loops, near, far, shown, corner) for near, far in _pairs(body)]
     if body.kind.name == "biped-front":
-        found += [find_arm_line(loops, body.joints, side, rgba, corner) for side in arms]
+        found += [find_arm_line(loops, body.joints, side, shown, corner) for side in arms]
     lines = [line for line in found if line is not None]
     width = CUT_WIDTH * box_diagonal(layer.domain.outline)
     handles = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
-    free = [line for line in lines if (_distances(handles, line) > BESIDE * width).all()]
+    lines = [_with_straight_mouth(line, layer.domain) for line in lines]
+    free = [line for line in lines if (_distances(handles, line.points) > BESIDE * width).all()]
     for count in range(len(free), 0, -1):
-        for some in combinations(free, count):
-            drawn = tuple(CutLine(points=line - layer.corner) for line in some)
+        for chosen, share in product(combinations(free, count), SHARES):
+            some = tuple(line.shortened(share) for line in chosen)
+            drawn = tuple(_cut_line(line, layer.corner, LEAST * width) for line in some)
             cut_out = replace(layer.cut_out, cut_lines=(*layer.cut_out.cut_lines, *drawn))
             if _is_possible(layer, cut_out, rgba):
                 return LimbCuts(cut_out, _beside(body.joints, some, BESIDE * width))
@@ -80,6 +89,25 @@ def _pairs(body: Body) -> list[tuple[list[complex], list[complex]]]:
     return pairs
 
 
+def _with_straight_mouth(line: LimbLine, domain: Domain) -> LimbLine:
+    """Return a line without its points near the outline, from where the knife extends it."""
+    loops = domain.loops
+    away = distance_to_boundary(loops[0], line.points, holes=loops[1:])
+    deep = domain.contains(line.points) & (away >= MOUTH * box_diagonal(loops[0]))
+    first = int(deep.argmax())
+    if len(line.points) - first < FEWEST:
+        return line
+    return line._replace(points=line.points[first:], crotch=max(line.crotch - first, 0))
+
+
+def _cut_line(line: LimbLine, corner: complex, least: float) -> CutLine:
+    """Return the knife line; the far limb is covered above the crotch."""
+    points = line.points - corner
+    if np.abs(np.diff(points[line.crotch :])).sum() < least:
+        return CutLine(points=points)
+    return CutLine(points=points, covered=line.far_side, covered_from=line.crotch)
+
+
 def _is_possible(layer: Layer, cut_out: CutOut, rgba: Bytes) -> bool:
     """Return whether the cut-out leaves a domain that contains the handles and the anchor."""
     try:
@@ -102,13 +130,13 @@ def _distances(points: Complexes, line: Complexes) -> Floats:
 
 
 def _beside(
-    joints: Mapping[str, complex], lines: tuple[Complexes, ...], least: float
+    joints: Mapping[str, complex], lines: tuple[LimbLine, ...], least: float
 ) -> dict[str, complex]:
     """Return the joints, those closer to a line than a distance moved away from it."""
     moved = dict(joints)
     for name, place in joints.items():
         for line in lines:
-            nearest = line[np.abs(line - place).argmin()]
+            nearest = line.points[np.abs(line.points - place).argmin()]
             away = place - nearest
             if 0 < abs(away) < least:
                 moved[name] = complex(nearest + least * away / abs(away))

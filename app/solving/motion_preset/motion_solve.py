@@ -172,10 +172,9 @@ class MotionSolve:
     def command(self) -> Command:
         """The command that applies everything as one undo step."""
         apply = scene_commands.apply_motion(self.posed_layer, self.applied)
-        if not self.parted:
-            return apply
         keep = layer_commands.keep_attachments(self.before.id)
-        return Command(apply.label, lambda document: keep(apply(document)))
+        parted = Command(apply.label, lambda document: keep(apply(document)))
+        return parted if self.parted else apply
 
 
 def start_motion_solve(
@@ -183,10 +182,9 @@ def start_motion_solve(
 ) -> MotionSolve:
     """Return the initial state of applying a motion preset; no key is solved yet.
 
-    With the picture `rgba`, limbs that touch in the drawing are parted first.
-
-    Raises a `LissomError` or `EngineError` if the layer cannot be posed, a joint is not on it, or a
-    needed joint is missing.
+    With the picture `rgba`, limbs that touch in the drawing are parted first. Raises a
+    `LissomError` or `EngineError` if the layer cannot be posed, a joint is not on it, or a needed
+    joint is missing.
     """
     before = document.layer(identity)
     if before.still:

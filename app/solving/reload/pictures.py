@@ -5,7 +5,7 @@ from hashlib import blake2b
 
 import numpy as np
 
-from app.cut_out import CutLine, CutOut, Mask, Stroke
+from app.cut_out import CutOut, Mask, Stroke
 from app.solving.reload.alignment import PlacedPicture, agreement_in_place, align_pictures
 from engine.arrays import Booleans, Bytes
 
@@ -73,7 +73,7 @@ def move_cut_out(cut_out: CutOut, by: complex, size: tuple[int, int]) -> CutOut:
             for each in cut_out.strokes
         ),
         toggled_holes=tuple(hole + by for hole in cut_out.toggled_holes),
-        cut_lines=tuple(CutLine(points=line.points + by) for line in cut_out.cut_lines),
+        cut_lines=tuple(replace(line, points=line.points + by) for line in cut_out.cut_lines),
     )
 
 

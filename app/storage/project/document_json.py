@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import astuple
+from functools import partial
 from importlib.metadata import version
 from math import inf
 from operator import attrgetter
@@ -95,6 +96,13 @@ MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
 def _counts(lines: Sequence[Stroke] | Sequence[CutLine]) -> tuple[int, ...]:
     """Return the number of points of each line."""
     return tuple(len(line.points) for line in lines)
+
+
+def _of_covered(name: str, layer: Layer) -> tuple[Any, ...]:
+    """Return an attribute of each cut line; none if no line has a covered side."""
+    lines = layer.cut_out.cut_lines
+    has_side = any(line.covered != "none" for line in lines)
+    return tuple(getattr(line, name) for line in lines) if has_side else ()
 
 
 def _read_joints(content: object, where: str) -> dict[str, int]:
@@ -356,6 +364,8 @@ DOMAIN = nested_record(
         default=(),
         legacy_name="slits",
     ),
+    Field("covered", list_of(TEXT), partial(_of_covered, "covered"), default=()),
+    Field("covered_from", list_of(WHOLE), partial(_of_covered, "covered_from"), default=()),
     Field("parted", FLAG, lambda layer: layer.domain.closed is not None, default=False),
     Field("stale", FLAG, attrgetter("is_stale"), legacy_default=False),
 )
@@ -617,6 +627,15 @@ def _unproven(_: HarmonicMap) -> Certificate:
 
 def _cut_out(fields: dict[str, Any], members: LayerMembers, size: tuple[int, int]) -> CutOut:
     strokes = fields.pop("strokes")
+    lines = members.lines("slits", fields["cut_lines"])
+    covered = fields.pop("covered") or ("none",) * len(lines)
+    starts = fields.pop("covered_from") or (0,) * len(lines)
+    if not len(covered) == len(starts) == len(lines):
+        raise LissomError(
+            _("the covered sides are of {count} knife lines, not {lines}").format(
+                count=len(covered), lines=len(lines)
+            )
+        )
     ways = members.lines("strokes", [stroke.pop("points") for stroke in strokes])
     return CutOut(
         **fields
@@ -626,7 +645,8 @@ def _cut_out(fields: dict[str, Any], members: LayerMembers, size: tuple[int, int
                 Stroke(points=way, **stroke) for stroke, way in zip(strokes, ways, strict=True)
             ),
             "cut_lines": tuple(
-                CutLine(points=way) for way in members.lines("slits", fields["cut_lines"])
+                CutLine(points=way, covered=side, covered_from=start)
+                for way, side, start in zip(lines, covered, starts, strict=True)
             ),
         }
     )

@@ -151,15 +151,20 @@ def test_the_picture_is_where_the_mesh_shows_it(giraffe, tmp_path):
     assert beside[:, :3].max(axis=1).min() > 0
 
 
-def test_a_slit_is_closed_in_a_model(tmp_path):
+@pytest.mark.parametrize("covered", ["none", "left"])
+def test_a_slit_is_closed_in_a_model(tmp_path, covered):
     out = tmp_path / "parted.glb"
-    document, _ = exported(moving_document(cut_out=PARTED), out, settings(tolerance=0.01))
+    lines = tuple(replace(line, covered=covered) for line in PARTED.cut_lines)
+    cut_out = replace(PARTED, cut_lines=lines)
+    document, _ = exported(moving_document(cut_out=cut_out), out, settings(tolerance=0.01))
     gltf, layer = read(out), document.layers[0]
-    seam = find_closed_cuts(layer.domain)
+    seam = find_closed_cuts(layer.domain, cut_out.covered_lines(layer.corner))
+    assert bool(seam.further_vertices) == (covered != "none")
     primitive = gltf.meshes[0].primitives[0]
     rest = places(gltf, primitive.attributes.POSITION) + complex(*gltf.asset.extras["origin"])
     wanted = seam.close_cuts(layer.domain.mesh.vertices)
-    assert np.abs(wanted - layer.domain.mesh.vertices).max() > 0.05
+    count = len(layer.domain.mesh.vertices)
+    assert np.abs(wanted[:count] - layer.domain.mesh.vertices).max() > 0.05
     assert_allclose(rest, wanted, rtol=0, atol=1e-3)
     animation = animation_of(clip_of(document, layer.id))
     last = document.frames.last

@@ -97,6 +97,15 @@ def test_a_slit_is_not_seen_as_long_as_its_sides_lie_together(gl, triangles):
     assert (still(gl, naked)[SEEN] != BLOB[SEEN]).any()
 
 
+@pytest.mark.parametrize("covered", ["left", "right"])
+def test_an_underlay_is_hidden_as_long_as_a_slit_is_closed(gl, covered):
+    lines = tuple(replace(line, covered=covered) for line in PARTED.cut_lines)
+    document = still_document(cut_out=replace(PARTED, cut_lines=lines))
+    assert document.layers[0].cut_out.covered_lines(0j)
+    opaque = SEEN & (BLOB[..., 3] == 255)
+    assert_array_equal(still(gl, document)[opaque], BLOB[opaque])
+
+
 def test_whole_pixels_of_motion_move_whole_pixels(gl, document):
     with drawing(gl, document, Sliding(document, 3 - 2j)) as draw:
         frames = [draw(float(time)) for time in (0, 1, 2, 0)]

@@ -48,7 +48,7 @@ def test_legs_keep_their_areas_when_they_are_parted(person):
     document, rgba = person
     solve = start_motion_solve(document, 0, WALK, rgba)
     assert solve.parted
-    assert "parted along the near leg's line" in solve.notices[0]
+    assert "parted along their drawn lines" in solve.notices[0]
     (line,) = solve.document.layer(0).cut_out.cut_lines
     assert len(line.points) > 10
     while not solve.is_solved:

@@ -1049,7 +1049,7 @@ def test_a_domain_that_was_parted_comes_back_so_and_needs_what_closes_it(tmp_pat
     loops = np.concatenate(first.domain.loops)
     slits = (
         CutLine(points=np.array([-5 + 20j, 1 / 3])),
-        CutLine(points=np.array([3.0 + 199j, 4, 5])),
+        CutLine(points=np.array([3.0 + 199j, 4, 5]), covered="right", covered_from=1),
     )
     parted = replace(
         first,
@@ -1069,6 +1069,14 @@ def test_a_domain_that_was_parted_comes_back_so_and_needs_what_closes_it(tmp_pat
     ):
         with pytest.raises(LissomError, match=message):
             load_project(pack(tmp_path / "b", members | {name: content}))
+    for field, value in (
+        ("covered", ["right"]),
+        ("covered", ["x", "none"]),
+        ("covered_from", [9, 9]),
+    ):
+        broken = with_json(members, "layers", 0, "domain", field, value=value)
+        with pytest.raises(LissomError, match=r"cover"):
+            load_project(pack(tmp_path / "b", broken))
     for counts, message in (([2, 2], "slits of a cut-out"), ([4, 1], "at least 2"), (3, "a list")):
         broken = with_json(members, "layers", 0, "domain", "cut_lines", value=counts)
         with pytest.raises(LissomError, match=message):

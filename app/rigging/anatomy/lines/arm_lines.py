@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from app.rigging.anatomy.joints import suggest_joints
-from app.rigging.anatomy.lines.limb_lines import find_limb_line
+from app.rigging.anatomy.lines.limb_lines import LimbLine, find_limb_line
 from app.rigging.motions.kinds import BodyKind
 from engine.arrays import Bytes, Complexes
 from engine.geometry import distance_to_boundary
@@ -22,7 +22,7 @@ def find_arm_line(
     side: str,
     rgba: Bytes,
     corner: complex,
-) -> Complexes | None:
+) -> LimbLine | None:
     """Return the line that parts an arm, seen from the front, from the trunk up to its shoulder.
 
     None without such a line. The parameters are those of `find_limb_line`, and the side, L or R.
@@ -35,11 +35,12 @@ def find_arm_line(
     if line is None:
         return None
     room = float(distance_to_boundary(loops[0], np.array(arm[:1]), loops[1:])[0])
-    away = np.abs(line - arm[0])
+    away = np.abs(line.points - arm[0])
     if away[-1] > NEAR_SHOULDER * room:
         return None
-    below = line[: int(np.flatnonzero(away >= BELOW_SHOULDER * room).max(initial=0)) + 1]
-    return below if len(below) > 1 else None
+    last = int(np.flatnonzero(away >= BELOW_SHOULDER * room).max(initial=0))
+    # The trunk is whole beside the arm.
+    return line._replace(points=line.points[: last + 1], crotch=last) if last > 0 else None
 
 
 def with_shoulders(

@@ -158,13 +158,14 @@ class GpuResources:
 
     def _mesh(self, layer: int, mesh: DeformMesh) -> GpuMesh:
         if (mesh, layer) not in self._meshes:
-            drawn = mesh.domain.mesh
+            drawn, shown = mesh.domain.mesh, self.project.document.layer(layer)
+            bent = self.project.document.deform_layer(shown)
             self._meshes[mesh, layer] = GpuMesh(
                 self._renderer.programs,
                 self.picture(layer),
-                rest=drawn.vertices - self.project.document.layer(layer).corner,
+                rest=drawn.vertices - shown.corner,
                 triangles=drawn.triangles,
-                seam=find_closed_cuts(mesh.domain),
+                seam=find_closed_cuts(mesh.domain, bent.cut_out.covered_lines(bent.corner)),
             )
         return self._meshes[mesh, layer]
 

@@ -1,0 +1,201 @@
+"""Underlays: material of one side of a slit that continues under the other side.
+
+A drawing shows nothing of a limb where another limb covers it. When the limbs part, the covered one
+would end at the slit. Instead it continues there, as its own mirror image across the slit, up to
+the width of the limb that covered it. The mirror image of its outline closes it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+import shapely
+from scipy import ndimage
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from engine.arrays import Complexes, Floats, Indices, Integers
+from engine.domain.meshing.mesh import Mesh
+from engine.domain.outline.slit_sides import CUT_WIDTH
+from engine.geometry import Domain, as_xy, box_diagonal, diameter, shapely_region
+
+BESIDE = 2.0  # slit widths: a vertex on a side of a slit is this near to its line
+SPACING, ROUNDING = 2.0, 3.0  # slit widths between samples of a line, samples of its rounding
+HIDDEN = 0.65  # of the width of a covering limb less the visible one: width of an underlay
+TAPER = 0.5  # of the distance from the ends of a slit: width of an underlay there, at most
+INK = 3.0  # slit widths: width of an underlay where it begins
+TIP = 0.1  # slit widths: a tip is this near to the domain
+STEADY = 2.0  # vertices over which widths are rounded
+CANDIDATES = 16  # triangles that may contain a point
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Underlay:
+    """Further vertices beyond slits, and triangles between them and the slits.
+
+    The places of a further vertex is that of a mesh vertex mirrored: twice the vertex on the slit
+    less a place inside. It is painted as another place inside.
+
+    Parameters
+    ----------
+    vertices : intp, shape (e,)
+        Of the mesh, on the slit, of each further vertex.
+    corners, painted_corners : int32, shape (e, 3)
+        Triangles around the mirrored and the painted places.
+    weights, painted_weights : float64, shape (e, 3)
+        Barycentric coordinates in these triangles.
+    triangles : int32, shape (k, 3)
+        Indices of the mesh's vertices, followed by the further ones.
+    """
+
+    vertices: Indices
+    corners: Integers
+    weights: Floats
+    painted_corners: Integers
+    painted_weights: Floats
+    triangles: Integers
+
+    def mirror(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return values (e, …) of the further vertices from those of the mesh's vertices (v, …)."""
+        mirrored = np.einsum("ec,ec...->e...", self.weights, values[self.corners])
+        return np.asarray(2 * values[self.vertices] - mirrored)
+
+    def paint(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return values (e, …) at the painted places."""
+        return np.asarray(
+            np.einsum("ec,ec...->e...", self.painted_weights, values[self.painted_corners])
+        )
+
+
+def find_underlay(
+    domain: Domain, mesh: Mesh, sides: Indices, lines: Sequence[Complexes]
+) -> Underlay | None:
+    """Return the underlay of a mesh's slits; None if no slit has a covered side.
+
+    Parameters
+    ----------
+    sides : intp, shape (s,)
+        The vertices on the sides of slits.
+    lines : sequence of complex128, each of shape (n,)
+        Lines of slits, each with its covered side on its left.
+    """
+    width = CUT_WIDTH * box_diagonal(domain.outline)
+    region = shapely_region(domain.outline, domain.loops[1:])
+    outwards = np.zeros(len(mesh.vertices), dtype=np.complex128)
+    along = np.zeros(len(mesh.vertices))
+    limits = np.zeros(len(mesh.vertices))
+    for line in lines:
+        side, at, way, tangents = _find_side(mesh.vertices, sides, line, width)
+        outwards[side] = -1j * tangents
+        along[side] = at
+        # At a tip both sides are one. Elsewhere, the outline of the covered limb goes under the
+        # other limb, which covers that outline's ink first.
+        is_tip = shapely.distance(region, shapely.points(as_xy(line[[0, -1]]))) < TIP * width
+        first, last = np.where(is_tip, 0.0, INK * width)
+        limits[side] = np.minimum(first + TAPER * at, last + TAPER * (way - at))
+    edges = _border_edges(mesh.triangles)
+    edges = edges[(outwards[edges] != 0).all(axis=1)]
+    if not len(edges):
+        return None
+    found, inverse = np.unique(edges, return_inverse=True)
+    edges = inverse.reshape(-1, 2)
+    outwards, along = outwards[found], along[found]
+    places = mesh.vertices[found]
+    most = diameter(domain.outline)
+    seen = _find_room(region, places - width * outwards / 2, -outwards, most)
+    covering = _find_room(region, places + 2.5 * width * outwards, outwards, most)
+    depths = np.minimum(seen, HIDDEN * np.maximum(covering - seen, 0.0))
+    depths = np.minimum(_rounded(depths, edges, along), limits[found])
+    inner, weights = _locate(mesh, places - depths * outwards)
+    painted, painted_weights = _locate(mesh, places - seen * outwards)
+    first, second = found[edges].T
+    beyond, after = (edges + len(mesh.vertices)).T
+    triangles = np.concatenate(
+        [np.column_stack([first, second, after]), np.column_stack([first, after, beyond])]
+    )
+    return Underlay(
+        vertices=found,
+        corners=inner,
+        weights=weights,
+        painted_corners=painted,
+        painted_weights=painted_weights,
+        triangles=triangles.astype(np.int32),
+    )
+
+
+def _find_side(
+    vertices: Complexes, sides: Indices, line: Complexes, width: float
+) -> tuple[Indices, Floats, float, Complexes]:
+    """Return the vertices on a line's covered side, their places along it, its length, tangents."""
+    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(line))))
+    count = max(8, int(lengths[-1] / (SPACING * width)))
+    at = np.linspace(0.0, lengths[-1], count)
+    way = np.interp(at, lengths, line)
+    tangents = ndimage.gaussian_filter1d(np.gradient(way), ROUNDING, mode="nearest")
+    tangents /= np.abs(tangents)
+    nearest = np.abs(vertices[sides, None] - way).argmin(axis=1)
+    away = (vertices[sides] - way[nearest]) / (1j * tangents[nearest])
+    is_covered = (away.real > 0) & (np.abs(away) < BESIDE * width)
+    chosen = nearest[is_covered]
+    return sides[is_covered], at[chosen], float(lengths[-1]), tangents[chosen]
+
+
+def _border_edges(triangles: Integers) -> Indices:
+    """Return the edges (b, 2) of only one triangle."""
+    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]).astype(np.int64)
+    keys = edges.min(axis=1) << 32 | edges.max(axis=1)
+    _, first, count = np.unique(keys, return_index=True, return_counts=True)
+    border: Indices = edges[first[count == 1]]
+    return border
+
+
+def _find_room(
+    region: shapely.Polygon, places: Complexes, directions: Complexes, most: float
+) -> Floats:
+    """Return how far rays run inside a region from places (n,)."""
+    ends = places + most * directions
+    rays = shapely.linestrings(np.stack([as_xy(places), as_xy(ends)], axis=1))
+    room = np.full(len(places), most)
+    hits, numbers = shapely.get_coordinates(
+        shapely.intersection(region.boundary, rays), return_index=True
+    )
+    np.minimum.at(room, numbers, np.abs(hits @ [1, 1j] - places[numbers]))
+    room[~shapely.contains_xy(region, places.real, places.imag)] = 0.0
+    return room
+
+
+def _rounded(depths: Floats, edges: Indices, along: Floats) -> Floats:
+    """Return depths that are rounded along each connected side of a slit."""
+    count = len(depths)
+    graph = scipy.sparse.coo_array((np.ones(len(edges)), edges.T), shape=(count, count))
+    _, parts = connected_components(graph, directed=False)
+    result = np.zeros(count)
+    for part in range(parts.max() + 1):
+        chain = np.flatnonzero(parts == part)
+        chain = chain[np.argsort(along[chain])]
+        result[chain] = ndimage.gaussian_filter1d(depths[chain], STEADY, mode="nearest")
+    return result
+
+
+def _locate(mesh: Mesh, points: Complexes) -> tuple[Integers, Floats]:
+    """Return a triangle (n, 3) at each point, and barycentric weights, also beside the mesh."""
+    middles = mesh.vertices[mesh.triangles].mean(axis=1)
+    count = min(CANDIDATES, len(middles))
+    _, near = cKDTree(as_xy(middles)).query(as_xy(points), k=count)
+    near = near.reshape(len(points), count)
+    corners = mesh.vertices[mesh.triangles[near]]
+    weights = find_weights(corners.reshape(-1, 3), np.repeat(points, count)).reshape(-1, count, 3)
+    best = weights.min(axis=2).argmax(axis=1)
+    rows = np.arange(len(points))
+    return mesh.triangles[near[rows, best]], weights[rows, best]
+
+
+def find_weights(corners: Complexes, places: Complexes) -> Floats:
+    """Return the barycentric coordinates (n, 3) of places (n,) in triangles (n, 3)."""
+    a, b, c = corners.T
+    area, away = ((b - a).conj() * (c - a)).imag, places - a
+    second, third = (away.conj() * (c - a)).imag / area, ((b - a).conj() * away).imag / area
+    return np.column_stack([1 - second - third, second, third])
