@@ -183,8 +183,7 @@ def start_motion_solve(
     """Return the initial state of applying a motion preset; no key is solved yet.
 
     With the picture `rgba`, limbs that touch in the drawing are parted first. Raises a
-    `LissomError` or `EngineError` if the layer cannot be posed, a joint is not on it, or a needed
-    joint is missing.
+    `LissomError` or `EngineError` if the layer cannot be posed, or a joint is off it or missing.
     """
     before = document.layer(identity)
     if before.still:
