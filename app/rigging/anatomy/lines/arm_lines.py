@@ -14,6 +14,7 @@ from engine.geometry import distance_to_boundary
 NEAR_SHOULDER = 1.6
 # A slit up to the shoulder would let the trunk give way at its end; it ends this far below.
 BELOW_SHOULDER = 1.2
+FEWEST = 8  # points above a gap between arm and trunk, where the line is drawn
 
 
 def find_arm_line(
@@ -32,7 +33,7 @@ def find_arm_line(
         return None
     arm, trunk = [joints[name] for name in names], [joints["chest"], joints["hips"]]
     line = find_limb_line(loops, arm, trunk, rgba, corner)
-    if line is None:
+    if line is None or line.crotch > len(line.points) - FEWEST:
         return None
     room = float(distance_to_boundary(loops[0], np.array(arm[:1]), loops[1:])[0])
     away = np.abs(line.points - arm[0])

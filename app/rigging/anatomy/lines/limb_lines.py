@@ -35,6 +35,7 @@ GAP, SHORTEST, SMOOTHING, NEAR_FAR = 0.06, 0.12, 0.02, 0.04
 STEEP = 1.2  # samples across the limb per sample along it: there the line leaves the limb
 BRIDGE = 0.2  # of the far limb's greatest visible width: least width where the line ends
 THICK = 1.25  # of the usual width of a line: most of one
+WEBBED = 0.3  # of the limb's length: shortest closed gap that parts limbs without a line above it
 SURE = 0.7  # share of a line's samples in which it is seen
 ASKEW = 0.6  # samples across the limb per sample along it: most on the whole
 OPEN = 0.01  # of the limb's length: width of a gap of the outline in which a line may begin
@@ -111,7 +112,7 @@ def find_limb_line(
     last = min(last, int(np.append(is_end[:last], True).argmax()))
     if last - crotch < SHORTEST * samples or seen[crotch + 1 : last + 1].mean() < SURE:
         last = crotch  # the limbs part at the gap only
-    if last - int(touching[0]) < SHORTEST * samples:
+    if last - int(touching[0]) < (SHORTEST if last > crotch else WEBBED) * samples:
         return None
     if abs(smooth[last] - smooth[crotch]) > ASKEW * (last - crotch):
         return None

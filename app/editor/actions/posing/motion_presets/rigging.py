@@ -48,7 +48,8 @@ def _rig(session: Session, project: Project, draft: MotionSetup) -> None:
         motion=draft.motion, kind=draft.kind, joints=draft.joints, facing=draft.facing
     )
     body = find_rest_body(layer, order)
-    cuts = find_limb_cuts(layer, body, project.runtimes.layers[layer.id].picture.rgba)
+    rgba = project.runtimes.layers[layer.id].picture.rgba
+    cuts = None if layer.is_stale else find_limb_cuts(layer, body, rgba)
     if cuts is not None:
         body = replace(body, joints=cuts.joints)
 
