@@ -71,9 +71,11 @@ class LimbMotion(MotionTemplate):
             moved |= self.leans.keys()
         stepping = {} if self.gait is None else dict(self.gait.landings)
         arms = {without_side(name) for name in joints if other_side(name) != name}
+        # From the side a head without a neck is a part of the trunk while legs step.
+        has_head = "neck" in joints or kind == "biped-front" or not self.can_travel
         is_changed = {
             "lean": kind != "biped-front",
-            "head_delay": bool({"neck", "head"} & moved & set(joints)),
+            "head_delay": has_head and bool({"neck", "head"} & moved & set(joints)),
             "arm_delay": bool({"elbow", "hand"} & moved & arms) and "hand.L" not in stepping,
             "tail_delay": "tail" in moved and "tail" in joints,
         }
@@ -199,6 +201,8 @@ class _LimbInstance(MotionInstance):
 
     def _grown(self, name: str, phase: float) -> float:
         """Return the length of a joint's bone, as a factor of the drawn one."""
+        if name == "head" and "neck" in self.body.joints:
+            return 1.0  # its bone is stiff; the head comes down with the neck
         curve = self.template.growth.get(without_side(name), STEADY)
         moment = phase - self._delay(without_side(name))
         return 1 + self.parameters.size * self.parameters.energy * curve(moment)

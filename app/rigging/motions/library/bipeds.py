@@ -160,7 +160,10 @@ NOD = Motion(
         # From the front a nodding head comes down and up again.
         "biped-front": LimbMotion(
             turns={"head": even_curve(0, 1, 1, 0, 0, -1, -1, 0)},
-            growth={"head": even_curve(0.01, -0.03, -0.12, -0.02, -0.1, -0.02, -0.01, 0.01)},
+            growth={
+                "neck": even_curve(0.02, -0.05, -0.2, -0.03, -0.17, -0.03, -0.01, 0.02),
+                "head": even_curve(0.01, -0.02, -0.09, -0.01, -0.08, -0.01, -0.01, 0.01),
+            },
             gait=STANDING,
             needed=("hips", "head"),
         ),

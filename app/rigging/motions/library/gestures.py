@@ -25,7 +25,10 @@ _TALKING = {
         swing=even_curve(0, 0, 0, 6, -8, 6, 0, 0),
     ),
 }
-_NODDING = {"head": even_curve(0, -0.02, -0.05, 0, -0.045, 0, -0.03, 0)}
+_NODDING = {
+    "neck": even_curve(0, -0.04, -0.1, 0, -0.09, 0, -0.06, 0),
+    "head": even_curve(0, -0.015, -0.04, 0, -0.035, 0, -0.02, 0),
+}
 TALK = Motion(
     name="talk",
     label=_("Talk"),
