@@ -1,12 +1,13 @@
 """Key poses of a motion preset as targets of handles."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from app.document import AppliedMotion, Layer, Limbs, Pose, Spring, Target
+from app.document import AppliedMotion, Layer, Pose, Spring, Target, rest_pose
 from app.rigging import Body, Performance, Timing
+from app.solving.drag.rig import Rig
 from app.solving.motion_preset.motion_request import MotionRequest
 from engine.maps import Bounds
 
@@ -114,12 +115,15 @@ def with_joint_weights(layer: Layer, joints: frozenset[int], feet: frozenset[int
     return replace(layer, handles=handles, bounds=inside, tracks=(), springs=(*springs, *carried))
 
 
-def with_planned_roots(pose: Pose, limbs: Limbs | None, moment: JointKeyPose) -> Pose:
-    """Return a key's pose with the roots of limbs where the preset has them.
+def find_start_pose(rig: Rig, poses: Sequence[Pose], moments: Sequence[JointKeyPose]) -> Pose:
+    """Return the pose from which the next key is solved: rest, or the last one of `poses`.
 
-    The pose knows where their legs pulled them. From the planned places on, the body moves as a
-    whole to the next key, and keeps its shape.
+    The roots of its limbs are where the preset has them, not where their legs pulled them. From
+    there the body moves as a whole to the next key, and keeps its shape.
     """
-    roots = {limb.chain.root for limb in limbs.limbs} if limbs is not None else set()
-    planned = {root: moment.targets[root] for root in roots if root in moment.targets}
-    return replace(pose, targets={**pose.targets, **planned})
+    if not poses:
+        return rest_pose(rig.layer.domain, rig.layer.handles)
+    pose, planned = poses[-1], moments[len(poses) - 1].targets
+    limbs = rig.limbs.limbs if rig.limbs is not None else ()
+    roots = {limb.chain.root for limb in limbs}.intersection(planned)
+    return replace(pose, targets={**pose.targets, **{root: planned[root] for root in roots}})

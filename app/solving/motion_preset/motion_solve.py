@@ -15,7 +15,6 @@ from app.document import (
     is_motion_unedited,
     layer_commands,
     measure_target_errors,
-    rest_pose,
     scene_commands,
 )
 from app.errors import LissomError
@@ -28,9 +27,9 @@ from app.solving.motion_preset.key_poses import (
     JointKeyPose,
     find_key_poses,
     find_raised_arms,
+    find_start_pose,
     plan_performance,
     with_joint_weights,
-    with_planned_roots,
 )
 from app.solving.motion_preset.limb_cuts import PARTED, find_limb_cuts, part_limbs
 from app.solving.motion_preset.misses import describe_misses
@@ -239,11 +238,7 @@ def step_motion_solve(giving: MotionSolve) -> MotionSolve:
     if giving.is_solved:
         return _smaller(giving)
     moment = giving.key_poses[len(giving.poses)]
-    layer = giving.rig.layer
-    begin = rest_pose(layer.domain, layer.handles)
-    if giving.poses:
-        before = giving.key_poses[len(giving.poses) - 1]
-        begin = with_planned_roots(giving.poses[-1], giving.rig.limbs, before)
+    begin = find_start_pose(giving.rig, giving.poses, giving.key_poses)
     pose = solve_key_pose(giving.rig, begin, moment)
     names = {identity: name for name, identity in giving.applied.joints.items()}
     short = dict(giving.target_errors)

@@ -23,7 +23,7 @@ from app.errors import LissomError
 from app.motion import Animation, PoseSampler, trace_paths
 from app.rigging import Parameters
 from app.solving import MotionRequest, start_motion_solve, step_motion_solve
-from app.solving.motion_preset.key_poses import with_planned_roots
+from app.solving.motion_preset.key_poses import find_start_pose
 from app.storage import load_project, open_picture, save_project
 from engine.errors import EngineError
 
@@ -109,7 +109,7 @@ def test_planted_feet_keep_one_speed_and_shins_their_length(scenes):
     assert_allclose(np.abs(np.subtract(knees, feet)), rest, rtol=0.03)
     # The next key starts with hips where the preset has them, whatever the legs did with them.
     pose, moment = giving.poses[3], giving.key_poses[3]
-    begin = with_planned_roots(pose, limbs, moment)
+    begin = find_start_pose(giving.rig, giving.poses[:4], giving.key_poses)
     for joint in ("hip.L", "hip.R"):
         hip = walk.joints[joint]
         assert pose.targets[hip].position != moment.targets[hip].position

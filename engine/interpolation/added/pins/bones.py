@@ -156,7 +156,7 @@ class SegmentBones:
                 goal = self._pinned_place(chain, share)
             if goal is not None and len(motions) == 2:
                 lack = self._end_lack(chain, time, motions[-1])
-                motions = _brought_to(chain, motions, goal - lack)
+                motions = _brought_to(chain, motions, goal - lack, self._side(chain))
             parts |= zip(chain.parts, motions, strict=True)
             if chain.end_part is not None:
                 is_pinned = goal is not None
@@ -242,6 +242,11 @@ class SegmentBones:
             angles[other] = angles[known] + step
         return angles
 
+    def _side(self, chain: ChainOfBones) -> int:
+        """Return the side to which two bones bend at both keyframes, 0 if they change it."""
+        sides = {_bend_side(chain, [key[part] for part in chain.parts]) for key in self.at_ends}
+        return sides.pop() if len(sides) == 1 else 0
+
     def _end_lack(self, chain: ChainOfBones, time: float, last: RigidPart) -> complex:
         """Return what the last bone lacks to bring the chain's end to its place."""
         if chain.end_part is None:
@@ -253,19 +258,34 @@ class SegmentBones:
         return complex(last.turn * (self.time_weights(time) @ lacks))
 
 
-def _brought_to(chain: ChainOfBones, motions: list[RigidPart], goal: complex) -> list[RigidPart]:
-    """Return the motions of two bones, turned so that their end comes to a goal within reach."""
+def _bend_side(chain: ChainOfBones, motions: Sequence[RigidPart]) -> int:
+    """Return the side of the way from root to end on which the joint of two bones is."""
+    root, joint, end = chain.joints
+    upper, lower = motions
+    start, knee, foot = upper.at(root), lower.at(joint), lower.at(end)
+    return 1 if ((foot - start).conjugate() * (knee - start)).imag >= 0 else -1
+
+
+def _brought_to(
+    chain: ChainOfBones, motions: list[RigidPart], goal: complex, side: int
+) -> list[RigidPart]:
+    """Return the motions of two bones, turned so that their end comes to a goal.
+
+    Their joint stays on a side, and by 0 on its own one. Beyond reach they are straight towards the
+    goal, so that nothing jumps where a leg is stretched out.
+    """
     root, joint, end = chain.joints
     upper, lower = motions
     start, knee, foot = upper.at(root), lower.at(joint), lower.at(end)
     first, second, way = abs(knee - start), abs(foot - knee), goal - start
-    distance = abs(way)
-    if not abs(first - second) < distance < first + second:
+    least, most = abs(first - second), first + second
+    distance = min(max(abs(way), least), most)
+    if not (way and distance):
         return motions
+    goal = start + way / abs(way) * distance
     along = (distance**2 + first**2 - second**2) / (2 * distance)
-    side = 1 if ((foot - start).conjugate() * (knee - start)).imag >= 0 else -1
-    across = side * sqrt(max(first**2 - along**2, 0.0))
-    bent = start + way / distance * complex(along, across)
+    across = (side or _bend_side(chain, motions)) * sqrt(max(first**2 - along**2, 0.0))
+    bent = start + way / abs(way) * complex(along, across)
     return [
         upper.turned(start, start, (bent - start) / (knee - start)),
         lower.turned(knee, bent, (goal - bent) / (foot - knee)),

@@ -23,9 +23,9 @@ from engine.interpolation.series.chebyshev import (
 from engine.maps import Bounds
 
 # Accuracy of the series and of the omitted terms. Unknowns are of the size of |h|, and positions
-# relative to the size of the domain: some thousandths of a pixel in a thousand.
-TOLERANCE, LEFT_OUT = 5e-6, 1e-6
-SHORTEST = 2.0**-3  # pieces of time are not halved below this
+# relative to the size of the domain: some hundredths of a pixel in a thousand.
+TOLERANCE, LEFT_OUT = 2e-5, 4e-6
+SHORTEST = 2.0**-2  # pieces of time are not halved below this
 DEGREES = (8, 16)
 # Distance of solved corrections from the limits, for what the series add between the solved times;
 # how far keyframes at a limit are exceeded; and the distance at which the barrier begins.
