@@ -56,4 +56,5 @@ from app.rigging.motions.motion import (
     Parameters as Parameters,
     Performance as Performance,
 )
+from app.rigging.motions.steps import bend_straight_legs as bend_straight_legs
 from app.rigging.motions.timing import Timing as Timing

@@ -12,6 +12,7 @@ from app.rigging.motions.timing import SAME_PHASE, Timing
 
 # A leg drawn with at least this bend keeps its side; a straighter leg bends as usual for its kind.
 BENT = 0.21  # radians
+ASIDE = 0.01  # of a leg's length: the least distance of a knee from its straight line
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,6 +99,26 @@ def _usual_bend(body: Body, tip: str) -> int:
     # A hock points backwards, knees and wrists forwards.
     is_hock = body.kind.name == "four-legs" and without_side(tip) == "foot"
     return -body.facing if is_hock else body.facing
+
+
+def bend_straight_legs(body: Body) -> dict[str, complex]:
+    """Return the joints with those of nearly straight legs a little on their usual side.
+
+    A leg begins to bend to the side on which its knee is drawn, however little that is.
+    """
+    joints = dict(body.joints)
+    tips = ("foot", "hand") if body.kind.name == "four-legs" else ("foot",)
+    for tip in (f"{name}.{side}" for name in tips for side in "LR"):
+        leg = find_leg(body, tip) if tip in joints else None
+        if leg is None or len(leg.joints) != 3:
+            continue
+        root, knee, end = (joints[name] for name in leg.joints)
+        way = (end - root) / abs(end - root)
+        local = (knee - root) / way
+        aside = max(abs(local.imag), ASIDE * leg.length)
+        if local.imag * leg.bend < ASIDE * leg.length:
+            joints[leg.joints[1]] = root + way * complex(local.real, leg.bend * aside)
+    return joints
 
 
 def solve_leg_ik(leg: BodyLeg, root: complex, tip: complex) -> dict[str, complex]:

@@ -7,8 +7,10 @@ import numpy as np
 
 from app.document import Layer
 from app.rigging import (
+    Body,
     BodyKind,
     NearLimb,
+    bend_straight_legs,
     find_kind,
     find_kind_by_legs,
     guess_facing,
@@ -60,6 +62,22 @@ def guess_joints(layer: Layer, kind: str, rgba: Bytes | None) -> JointGuess:
         facing = guess_facing(body, joints, loops[0])
         found = guess_near_limbs(loops, joints, rgba, layer.corner)
         joints = name_near_limbs(joints, found, facing)
+        joints = _with_bent_legs(layer, body, joints, facing)
     unsure = (limb.near.rpartition(".")[0] for limb in found if not limb.is_sure)
     ordered = {name: joints[name] for name in body.parents if name in joints}
     return JointGuess(ordered, tuple(f"{end}.{near_side(facing)}" for end in unsure))
+
+
+def _with_bent_legs(
+    layer: Layer, kind: BodyKind, joints: Mapping[str, complex], facing: int
+) -> dict[str, complex]:
+    """Return the joints with straight legs bent a little to their usual sides, on the drawing."""
+    outline = layer.domain.outline
+    box = (
+        complex(outline.real.min(), outline.imag.min()),
+        complex(outline.real.max(), outline.imag.max()),
+    )
+    bent = bend_straight_legs(Body(kind=kind, joints=joints, box=box, facing=facing))
+    inside = layer.domain.contains(np.array([*bent.values()])).tolist()
+    pairs = zip(bent.items(), inside, strict=True)
+    return {name: place if is_inside else joints[name] for (name, place), is_inside in pairs}

@@ -13,6 +13,7 @@ from app.rigging import (
     Body,
     Parameters,
     Timing,
+    bend_straight_legs,
     find_kind,
     find_motion,
     without_side,
@@ -313,3 +314,20 @@ def test_parameters_of_parts_are_offered_where_they_change_the_motion(name, kind
         other = places(name, kind, shares, Parameters(**{parameter: value}))
         moved = max(np.abs(other[joint] - way).max() for joint, way in usual.items())
         assert (moved > 1e-6) == (parameter in offered), parameter
+
+
+@pytest.mark.parametrize("facing", [1, -1])
+def test_straight_legs_are_bent_to_their_usual_side_and_bent_ones_stay(facing):
+    rest = body("biped-side")
+    root = rest.joints["hips"] - 10j
+    hips = dict.fromkeys(("hip.L", "hip.R"), root)
+    feet = dict.fromkeys(("foot.L", "foot.R"), root - 100j)
+    # The left knee is drawn a little backwards, the right one clearly.
+    knees = {"L": -2 * facing, "R": -30 * facing}
+    drawn = {f"knee.{side}": root - 50j + way for side, way in knees.items()}
+    of = replace(rest, joints={**rest.joints, **hips, **feet, **drawn}, facing=facing)
+    bent = bend_straight_legs(of)
+    assert bent["knee.L"] - root == pytest.approx(2 * facing - 50j, abs=0.1)
+    assert {name: at for name, at in bent.items() if name != "knee.L"} == {
+        name: at for name, at in of.joints.items() if name != "knee.L"
+    }
