@@ -23,7 +23,10 @@ from app.rigging import (
     with_shoulders,
     with_tracked_legs,
 )
-from engine.arrays import Bytes
+from engine.arrays import Bytes, Complexes
+from engine.geometry import diameter
+
+APART = 0.01  # of the drawing's diameter: joints that would meet are moved this far apart
 
 
 class JointGuess(NamedTuple):
@@ -55,7 +58,7 @@ def guess_joints(layer: Layer, kind: str, rgba: Bytes | None) -> JointGuess:
     legs = track_legs(loops, rgba, layer.corner)
     facing = guess_facing(body, joints, loops[0])
     tracked = with_tracked_legs(joints, body, legs, facing)
-    places = layer.domain.nearest(np.array([*tracked.values()])).tolist()
+    places = layer.domain.nearest(_place_apart(layer, np.array([*tracked.values()]))).tolist()
     joints = dict(zip(tracked, places, strict=True))
     found: tuple[NearLimb, ...] = ()
     if body.is_side_view:
@@ -81,3 +84,13 @@ def _with_bent_legs(
     inside = layer.domain.contains(np.array([*bent.values()])).tolist()
     pairs = zip(bent.items(), inside, strict=True)
     return {name: place if is_inside else joints[name] for (name, place), is_inside in pairs}
+
+
+def _place_apart(layer: Layer, places: Complexes) -> Complexes:
+    """Return places of joints, those at one place beside each other: no two handles may meet."""
+    step = APART * diameter(layer.domain.outline)
+    moved = places.copy()
+    for index in range(1, len(moved)):
+        while np.abs(moved[:index] - moved[index]).min() < step / 2:
+            moved[index] += step
+    return moved

@@ -8,6 +8,7 @@ from overlapping_legs import JOINTS, draw_person
 
 from app.document import Meshing, handle_commands
 from app.solving import MotionRequest, start_motion_solve, step_motion_solve
+from app.solving.motion_preset import joint_guess
 from app.storage import open_picture
 
 FEW = Meshing(triangles=1500, detail="coarse")
@@ -79,3 +80,13 @@ def test_no_line_is_cut_through_a_handle(person):
     inside = document.layer(0).domain.nearest(np.array([middle])).tolist()[0]
     held = handle_commands.add_handle(0, inside, name="seam")(document)
     assert not start_motion_solve(held, 0, WALK, rgba).parted
+
+
+def test_guessed_joints_are_apart_where_two_limbs_leave_the_body_at_one_place(person, monkeypatch):
+    document, rgba = person
+    meeting = {**JOINTS, "shoulder.L": 140 + 345j, "shoulder.R": 140 + 345j}
+    monkeypatch.setattr(joint_guess, "suggest_joints", lambda *_: meeting)
+    joints = joint_guess.guess_joints(document.layer(0), "biped-side", rgba).joints
+    places = np.array(list(joints.values()))
+    away = np.abs(places[:, None] - places) + np.eye(len(places)) * 1e9
+    assert away.min() > 2
