@@ -15,14 +15,16 @@ from engine.deform import Aim, Armature, Hinge, Shaft
 from engine.maps import Boundary, HarmonicMap
 
 # κ L² of each point of the body.
-BODY_STIFFNESS = 3e3
+BODY_STIFFNESS = 2e4
 # Largest force, per L, with which joints are pulled to the places of kinematics.
-JOINT_FORCE = 50.0
+JOINT_FORCE = 500.0
 # The same of dragged ends, which kinematics keeps within reach. An arm that has to bend inside a
 # broad trunk needs more than joints do.
-END_FORCE = 1000.0
+END_FORCE = 3000.0
+# Factor of the weights of the body's handles and of roots: the limbs bend, not the body.
+BODY_FIRMNESS = 2.0
 # Weight of rigid ends. Around other ends the bone's stiffness makes their handles firmer.
-END_WEIGHT = 10.0
+END_WEIGHT = 80.0
 # Largest force, per L, with which rigid ends are turned to their angles, at this lever over L.
 ANGLE_FORCE, ANGLE_LEVER = 50.0, 0.2
 
@@ -88,7 +90,7 @@ class PosedLimbs:
                     if self.has_body
                     else (limb.first_shaft, limb.places[0])
                 )
-                aims.append(Aim(*start, joints[root]))
+                aims.append(Aim(*start, joints[root], weight=BODY_FIRMNESS))
             for number, joint in enumerate(inner):
                 place = limb.places[number + 1]
                 aims.append(Aim(limb.first_shaft + number, place, joints[joint], JOINT_FORCE))

@@ -24,7 +24,7 @@ from app.solving.drag.limb_targets import (
     solve_limbs,
     straighten_flipping,
 )
-from app.solving.drag.limbs import END_FORCE, PosedLimbs
+from app.solving.drag.limbs import BODY_FIRMNESS, END_FORCE, PosedLimbs
 from engine.deform import (
     AIM_STIFFNESS,
     Armature,
@@ -43,7 +43,7 @@ LEEWAY = 0.02
 # Weight of a joint; handles usually have weight 1.
 PIN = 10.0
 # Factor of the weights of ends without a rigid part: bones do not give way.
-END_FIRMNESS = 5.0
+END_FIRMNESS = 40.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -279,9 +279,10 @@ def _place_handles(
     armature: Armature | None = None,
 ) -> Handles:
     ends = limbs.ends if limbs is not None else ()
+    others = BODY_FIRMNESS if limbs is not None else 1.0
     places = [*(handle.position for handle in held), *pins]
     weights = [
-        handle.effective_weight * (END_FIRMNESS if handle.id in ends else 1.0) for handle in held
+        handle.effective_weight * (END_FIRMNESS if handle.id in ends else others) for handle in held
     ]
     pulls = [*weights, *(PIN for _ in pins)]
     return Handles.place(boundary, np.array(places, dtype=np.complex128), pulls, armature)

@@ -20,7 +20,7 @@ from engine.deform.model.unknowns import by_unknowns
 from engine.maps import Boundary
 
 # κ of hinges and of aims, times L².
-HINGE_STIFFNESS = 3e5
+HINGE_STIFFNESS = 1.5e6
 AIM_STIFFNESS = STIFFNESS
 
 

@@ -10,7 +10,7 @@ from engine.arrays import Complexes, Floats, Indices, readonly
 from engine.errors import EngineError
 
 # κ L² of a shaft.
-SHAFT_STIFFNESS = 2e5
+SHAFT_STIFFNESS = 1e6
 # A shaft of fewer points has no direction.
 FEWEST_POINTS = 2
 

@@ -29,6 +29,10 @@ from engine.geometry import (
 POINTS = 5  # on the axis of a bone
 BODY_POINTS = 200
 LATTICE = 64  # places along the longer side among which the body's anchor is chosen
+# Near a root the body bends with the limb: its points keep away by this many half widths of the
+# joint, but never more than this part of them is left out. Measured on stubs: with all points a
+# bend of 100° moved parts of the body by 8 to 24 thousandths, and with these by 1 to 8.
+BESIDE_ROOT, MOST_LEFT_OUT = 3.0, 0.35
 # A shaft keeps clear of a joint by this many half widths, and by at most this part of the bone.
 CLEAR, MOST_CLEAR = 0.9, 0.4
 # The drawing is a limb where it is narrower than this part of the bone's length.
@@ -130,9 +134,14 @@ def body_points(
 ) -> Complexes:
     """Return points of the outline (≤ `BODY_POINTS`) that belong to no limb, far from each other.
 
-    `candidates` are points on the outline; `limbs` are as in `is_in_body`.
+    Points beside roots are left out. `candidates` are points on the outline; `limbs` are as in
+    `is_in_body`.
     """
     left = candidates[is_in_body(loops, candidates, limbs)]
+    if len(left) and limbs:
+        from_roots = [np.abs(left - limb.root) / limb.shape.joint_width for limb in limbs]
+        away = np.min(from_roots, axis=0)
+        left = left[away >= min(BESIDE_ROOT, float(np.quantile(away, MOST_LEFT_OUT)))]
     return readonly(left[spread_points(left, BODY_POINTS)])
 
 

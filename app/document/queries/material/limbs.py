@@ -26,7 +26,7 @@ from engine.maps import Boundary
 END_STIFFNESS = 3e4
 # κ of ties across the line, for all outlines. With less, elbows are pointed and their line thick;
 # with more, the limb becomes thin there.
-LINE_STIFFNESS = 100.0
+LINE_STIFFNESS = 150.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
