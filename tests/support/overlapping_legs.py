@@ -53,9 +53,11 @@ def draw_person(style: Literal["lines", "flat", "plain"]) -> Image.Image:
     return _drawn(parts, has_lines=style == "lines")
 
 
-def draw_front(*, has_lines: bool) -> Image.Image:
+def draw_front(*, has_lines: bool, arms_in_front: bool = False) -> Image.Image:
     """Draw a person from the front, with outlines or in a single colour."""
-    parts = [*FRONT_LEGS, *FRONT_ARMS, FRONT_TRUNK, FRONT_HEAD]
+    arms, trunk = FRONT_ARMS, [FRONT_TRUNK]
+    above = [*trunk, *arms] if arms_in_front else [*arms, *trunk]
+    parts = [*FRONT_LEGS, *above, FRONT_HEAD]
     return _drawn([(discs, NEAR) for discs in parts], has_lines=has_lines)
 
 

@@ -95,3 +95,22 @@ def test_lowered_arms_turn_in_their_shoulders_where_a_line_parts_them_from_the_t
     assert line[-1].imag < joints["shoulder.R"].imag - 15
     assert shapely.distance(trunk.exterior, inside).max() < 14
     assert shapely.distance(arm, inside).max() < 9
+
+
+@pytest.mark.parametrize("arms_in_front", [False, True])
+def test_what_is_in_front_keeps_its_outline_where_an_arm_is_parted(arms_in_front):
+    rgba = rgba_of(draw_front(has_lines=True, arms_in_front=arms_in_front))
+    domain, _ = build_picture_domain(rgba, triangles=1000, detail="normal")
+    kind = find_kind("biped-front")
+    joints = with_shoulders(suggest_joints(domain.loops, kind), kind, domain.loops, rgba, 0j)
+    for number, side in enumerate("RL"):
+        found = find_arm_line(domain.loops, joints, side, rgba, 0j)
+        assert found is not None
+        discs = FRONT_ARMS[number], FRONT_TRUNK
+        arm, trunk = (limb(*each).buffer(1) for each in discs)
+        front, behind = (arm, trunk) if arms_in_front else (trunk, arm)
+        points = shapely.points(as_xy(found.points))
+        on_both = points[shapely.contains(behind, points)]
+        assert len(on_both) > 10
+        # The end of the line, where the outlines are round, may lie in the ink.
+        assert np.median(shapely.contains(front, on_both)) == 0

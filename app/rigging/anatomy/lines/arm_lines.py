@@ -32,7 +32,7 @@ def find_arm_line(
     if not all(name in joints for name in (*names, "chest", "hips")):
         return None
     arm, trunk = [joints[name] for name in names], [joints["chest"], joints["hips"]]
-    line = find_limb_line(loops, arm, trunk, rgba, corner)
+    line = find_limb_line(loops, arm, trunk, rgba, corner, may_be_behind=True)
     if line is None or line.crotch > len(line.points) - FEWEST:
         return None
     room = float(distance_to_boundary(loops[0], np.array(arm[:1]), loops[1:])[0])

@@ -38,6 +38,8 @@ THICK = 1.25  # of the usual width of a line: most of one
 WEBBED = 0.3  # of the limb's length: shortest closed gap that parts limbs without a line above it
 SURE = 0.7  # share of a line's samples in which it is seen
 ASKEW = 0.6  # samples across the limb per sample along it: most on the whole
+# Of the limb's length: how far above and beside a gap outlines are compared, by rows of at least.
+GOES_ON, LEAST_ROWS = 0.2, 4
 OPEN = 0.01  # of the limb's length: width of a gap of the outline in which a line may begin
 
 
@@ -60,6 +62,8 @@ def find_limb_line(
     far: Sequence[complex],
     rgba: Bytes,
     corner: complex,
+    *,
+    may_be_behind: bool = False,
 ) -> LimbLine | None:
     """Return the line that parts a near limb from the far limb behind it, from its end upwards.
 
@@ -73,12 +77,15 @@ def find_limb_line(
         The picture.
     corner : complex
         Its lower left corner.
+    may_be_behind : bool
+        Whether the "near" limb may lie behind the other, as an arm behind the trunk. The line above
+        a gap is of the one in front: it goes straight on as that one's outline beside the gap.
 
     Returns
     -------
     LimbLine or None
-        Along the far side of the near limb's ink, so that the near limb keeps its outline; in gaps
-        along their middle. None if the limbs do not touch or no line shows where they part.
+        Beside the ink, so that the limb in front keeps its outline; in gaps along their middle.
+        None if the limbs do not touch or no line shows where they part.
     """
     length = float(np.abs(np.diff(near)).sum())
     strips = sample_strips(loops, near, far, rgba, corner)
@@ -99,11 +106,13 @@ def find_limb_line(
         return None
     offsets = _find_path(strips, _mark_allowed(strips, gaps, ankle), ankle)
     seen: Booleans = strips.evidence[rows, offsets] >= SEEN
-    steady = ndimage.median_filter(_move_beyond_ink(strips, offsets, gaps), 5, mode="nearest")
+    crotch = int(rows[is_open & (rows < root)].max(initial=int(touching[0])))
+    is_behind = may_be_behind and _goes_on_as_far(offsets, gaps, crotch, round(GOES_ON * samples))
+    beside = _move_beyond_ink(strips, offsets, gaps, is_behind=is_behind)
+    steady = ndimage.median_filter(beside, 5, mode="nearest")
     # Around the toes the line leads straight on to the ground, and not back under the sole.
     steady[: ankle + 1] = np.maximum.accumulate(steady[ankle::-1])[::-1]
     smooth = ndimage.gaussian_filter1d(steady, SMOOTHING * samples)
-    crotch = int(rows[is_open & (rows < root)].max(initial=int(touching[0])))
     room = strips.find_edges() - smooth
     last = _find_end(seen, crotch, root, round(GAP * samples))
     wide = BRIDGE * room[crotch : last + 1].max()
@@ -210,24 +219,41 @@ def _find_end(seen: Booleans, first: int, root: int, gap: int) -> int:
     return last
 
 
-def _move_beyond_ink(strips: Strips, offsets: Indices, gaps: Booleans) -> Floats:
-    """Return the offsets moved beyond the near limb's ink, and to the middle of gaps.
+def _goes_on_as_far(offsets: Indices, gaps: Booleans, crotch: int, count: int) -> bool:
+    """Return whether the line above a gap goes on as the far limb's outline beside the gap."""
+    below = np.flatnonzero(gaps[: crotch + 1].any(axis=1))[-count:]
+    above = np.arange(crotch + 1, min(crotch + 1 + count, len(offsets)))
+    if min(len(below), len(above)) < LEAST_ROWS:
+        return False
+    near, far = gaps[below].argmax(axis=1), gaps.shape[1] - gaps[below, ::-1].argmax(axis=1)
+    slope, *slopes = (
+        float(np.polyfit(rows, places, 1)[0])
+        for rows, places in ((above, offsets[above]), (below, near), (below, far))
+    )
+    return abs(slope - slopes[1]) < abs(slope - slopes[0])
+
+
+def _move_beyond_ink(
+    strips: Strips, offsets: Indices, gaps: Booleans, *, is_behind: bool
+) -> Floats:
+    """Return the offsets moved beyond the ink of the limb in front, and to the middle of gaps.
 
     Near the crotch, where the outlines of both limbs are one line, only the usual width of a line
-    is the near limb's.
+    is that limb's. `is_behind` says that the far limb is in front.
     """
-    moved = offsets.astype(np.float64)
-    is_ink, starts = strips.ink >= SEEN, offsets.copy()
+    is_ink, width = strips.ink >= SEEN, strips.ink.shape[1]
+    ends = np.stack([offsets, offsets]).astype(np.float64)
     for row, offset in enumerate(offsets.tolist()):
         if gaps[row].any():
-            moved[row] = np.flatnonzero(gaps[row]).mean()
+            ends[:, row] = np.flatnonzero(gaps[row]).mean()
             continue
         light = np.flatnonzero(~is_ink[row])
-        starts[row] = light[light <= offset].max(initial=0)
+        ends[0, row] = light[light <= offset].max(initial=0)
         if is_ink[row, offset]:
-            moved[row] = light[light > offset].min(initial=is_ink.shape[1] - 1)
+            ends[1, row] = light[light > offset].min(initial=width - 1)
+    starts, stops = ends
     is_line = ~gaps.any(axis=1) & is_ink[np.arange(len(offsets)), offsets]
-    if is_line.any():
-        usual = THICK * float(np.median((moved - starts)[is_line]))
-        moved[is_line] = np.minimum(moved, starts + usual)[is_line]
-    return moved
+    usual = THICK * float(np.median((stops - starts)[is_line])) if is_line.any() else 0.0
+    moved = np.maximum(starts, stops - usual) if is_behind else np.minimum(stops, starts + usual)
+    moved[~is_line] = (starts if is_behind else stops)[~is_line]
+    return np.asarray(moved, np.float64)
