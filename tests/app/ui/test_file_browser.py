@@ -139,6 +139,7 @@ def test_a_double_click_counts_however_slow_the_frames_are(
         io.delta_time = 0.5
         begin()
 
+    monkeypatch.setattr(io, "delta_time", io.delta_time)  # the later tests' own
     monkeypatch.setattr(calls, "pre_new_frame", begin_slowly)
     for _ in range(2):
         io.add_mouse_button_event(0, True)  # noqa: FBT003 - ImGui's own
