@@ -53,6 +53,14 @@ def draw_person(style: Literal["lines", "flat", "plain"]) -> Image.Image:
     return _drawn(parts, has_lines=style == "lines")
 
 
+def draw_long_toes() -> Image.Image:
+    """Draw a person from the side, with outlines, whose near toes cover the far ankle."""
+    near = (*NEAR_LEG[:-1], (184, 28, 12))
+    far = (*FAR_LEG[:-1], (236, 30, 12))
+    parts = [(far, FAR), (BODY, SKIN), (near, NEAR), (NOSE, SKIN), (HEAD, SKIN)]
+    return _drawn(parts, has_lines=True)
+
+
 def draw_front(*, has_lines: bool, arms_in_front: bool = False) -> Image.Image:
     """Draw a person from the front, with outlines or in a single colour."""
     arms, trunk = FRONT_ARMS, [FRONT_TRUNK]

@@ -115,9 +115,9 @@ def bend_straight_legs(body: Body) -> dict[str, complex]:
         root, knee, end = (joints[name] for name in leg.joints)
         way = (end - root) / abs(end - root)
         local = (knee - root) / way
-        aside = max(abs(local.imag), ASIDE * leg.length)
         if local.imag * leg.bend < ASIDE * leg.length:
-            joints[leg.joints[1]] = root + way * complex(local.real, leg.bend * aside)
+            aside = leg.bend * ASIDE * leg.length
+            joints[leg.joints[1]] = root + way * complex(local.real, aside)
     return joints
 
 

@@ -11,6 +11,7 @@ from overlapping_legs import (
     NEAR_LEG,
     SHOULDER,
     draw_front,
+    draw_long_toes,
     draw_person,
     limb,
     rgba_of,
@@ -22,6 +23,7 @@ from app.rigging import (
     find_kind,
     find_limb_line,
     suggest_joints,
+    track_legs,
     with_shoulders,
 )
 from engine.geometry import as_xy, distance_to_boundary
@@ -114,3 +116,12 @@ def test_what_is_in_front_keeps_its_outline_where_an_arm_is_parted(arms_in_front
         assert len(on_both) > 10
         # The end of the line, where the outlines are round, may lie in the ink.
         assert np.median(shapely.contains(front, on_both)) == 0
+
+
+def test_ankle_is_no_toe_that_shows_beside_the_near_foot():
+    rgba = rgba_of(draw_long_toes())
+    domain, _ = build_picture_domain(rgba, triangles=1000, detail="normal")
+    legs = track_legs(domain.loops, rgba, 0j)
+    assert len(legs) == 2
+    for leg, joints in zip(legs, LIMBS, strict=True):
+        assert abs(leg.foot - joints[-1]) < 20

@@ -33,6 +33,8 @@ HEM = 0.35  # of the height: a line across a leg is at most so high
 SLIM = 1.4  # length over width of a leg, at least
 ANKLE = 1.1  # height of the ankle above the sole, in radii of the leg
 FOOT = 1.35  # width of a foot's rows over that of the leg
+# From the ankle on a leg leads straight up: of its widths, how far it may lie beside that line.
+ASIDE = 0.5
 BENT = 0.03  # of a leg's length: its middle line is farther from a straight line if its knee bends
 
 
@@ -137,6 +139,10 @@ def _leg(track: _Track, root: float) -> tuple[complex, complex, complex]:
     widths, middles = track.widths, track.middles
     lower = float(np.median(widths[: len(widths) // 2]))
     is_ankle = (widths <= FOOT * lower) & (middles.imag - middles[0].imag >= ANKLE * lower / 2)
+    # Part of a foot, beside toes that cover the rest, may be as narrow.
+    rows, last = np.arange(len(widths)), len(widths) - 1
+    once, twice = (middles.real[np.minimum(rows + round(n * lower), last)] for n in (1, 2))
+    is_ankle &= np.abs(middles.real - (2 * once - twice)) <= ASIDE * lower
     ankle = int(is_ankle.argmax()) if is_ankle.any() else len(widths) // 4
     top = max(int(np.searchsorted(track.rows, root, side="right")) - 1, ankle + 2)
     way = middles[ankle : top + 1][::-1]
