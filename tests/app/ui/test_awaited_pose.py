@@ -12,7 +12,9 @@ from app.document.commands.keys import (
 )
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.inserting import insert_key
+from app.editor.actions.posing.pose_commit import POSING
 from app.editor.actions.posing.pose_drag import nudge_handles
+from app.editor.actions.posing.pose_solver import step_pose_solver
 from app.editor.actions.project_files import export_settings
 from app.motion import Animation
 
@@ -189,6 +191,21 @@ def test_it_is_not_lost_where_something_else_follows(window, bent, come, leave):
     playback.scrub(window.session, FRAME)
     window.settle()
     assert abs(target.position - in_between(bent)[1] - WAY) < pixel(window, bent)
+
+
+def test_a_pose_for_which_a_command_waits_does_not_wait_for_the_shown_frame(window, bent, come):
+    window.run(lambda robot: (drag(robot, window, bent), robot.mouse_up(0)))
+    playback.scrub(window.session, 2)
+    window.frames(2)
+    jobs = window.session.jobs
+    jobs.drop(POSING)
+    step_pose_solver(window.session, bent)
+    assert POSING not in jobs.kinds
+    bent.drag.note_awaited()
+    step_pose_solver(window.session, bent)
+    assert POSING in jobs.kinds
+    come()
+    assert bent.drag is None
 
 
 @pytest.mark.usefixtures("everything")

@@ -110,9 +110,10 @@ def step_pose_solver(session: Session, project: Project) -> None:
     drag = project.drag
     if drag is None or drag.is_at_rest or POSING in session.jobs.kinds:
         return
-    # A drag at another frame goes on once the shown frame is final.
+    # A drag at another frame goes on once the shown frame is final, or if a command waits for it.
     if not (
         project.history.is_held
+        or drag.is_awaited
         or is_drag_at_playhead(session, project, drag)
         or is_display_final(session, project)
     ):
