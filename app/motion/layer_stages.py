@@ -3,7 +3,15 @@
 from dataclasses import dataclass
 from typing import Self
 
-from app.document import Clip, Document, Pose, clip_of, keyed_pose_at, segment_time_at
+from app.document import (
+    Clip,
+    Document,
+    Pose,
+    clip_of,
+    keyed_pose_at,
+    motion_anchor,
+    segment_time_at,
+)
 from app.motion.caches.corrected_frames import CorrectedFrames, reuse_corrections
 from app.motion.caches.inbetween_cache import InbetweenCache
 from app.motion.caches.segment_memory import MemoryBudget
@@ -41,7 +49,7 @@ class LayerStages:
         layer = clip.layer
         if sibling is not None and sibling.domain.cage is not layer.domain.cage:
             sibling = None
-        sampler = PoseSampler(layer.domain, anchor=layer.anchor, sibling=sibling)
+        sampler = PoseSampler(layer.domain, anchor=motion_anchor(layer), sibling=sibling)
         store = InbetweenCache(
             mesh=DeformMesh.fine(layer.domain),
             sampler=sampler,

@@ -154,7 +154,8 @@ class InbetweenCache(CachedFrames):
 
     def add(self, found: CacheUpdate) -> None:
         """Add the result of a job for any clip."""
-        anchors, sampler = {clip.layer.anchor for clip in self.memory.present}, found.sampler
+        present, sampler = self.memory.present, found.sampler
+        anchors = {motion_anchor(clip.layer) for clip in present}
         if sampler is not None and (not anchors or sampler.anchor in anchors):
             self.sampler = sampler
         for key, newer in found.segments.items():

@@ -17,6 +17,7 @@ from app.document import (
     Clip,
     DistortionRange,
     Variant,
+    motion_anchor,
     motion_source,
     slider_poses,
     stiffness_source,
@@ -115,7 +116,7 @@ class FrameCorrector:
         stiffness = self._corrector.boundary.stiffness
         self._of_what = (
             *(self._corrector.points.tobytes(), stiffness.tobytes(), layer.widest_bounds),
-            *(layer.anchor, self._is_anchored, variant),
+            *(motion_anchor(layer), self._is_anchored, variant),
         )
         self._motion = KeyframeMotion(clip, variant, own, pins)
         self._own = SecondaryMotion(clip, carried)

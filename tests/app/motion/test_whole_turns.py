@@ -8,7 +8,7 @@ from animations import still_document
 from numpy.testing import assert_allclose
 
 from app.document import Bone, Target, clip_of, handle_commands, motion_anchor
-from app.motion import Animation, PoseSampler
+from app.motion import Animation, DeformMesh, InbetweenCache, PoseSampler
 
 BAR, DISC = 260.0, 60.0  # length of the stem, and radius of the disc at its end
 START, END = 40 + 100j, 340 + 100j
@@ -75,9 +75,17 @@ def test_bones_turn_about_the_body_that_carries_them(disc):
     rest = layer.keys[0]
     keys = (rest, replace(rest, frame=20, pose=replace(pose, targets=targets)))
     document = document.with_layer(replace(layer, keys=keys))
-    animation = Animation(clip_of(document, 0), points=np.array([anchor]))
+    clip = clip_of(document, 0)
+    animation = Animation(clip, points=np.array([anchor]))
     places = np.concatenate([animation.positions(frame) for frame in range(21)])
     assert_allclose(places, anchor, atol=4.0)
+    # The window's cache takes the sampler of this anchor.
+    cache = InbetweenCache(mesh=DeformMesh.fine(layer.domain))
+    cache.set_needed_clips([clip], (), 7)
+    cache.add(cache.segments_job(clip, cache.missing_segments(clip, 7))())
+    assert cache.sampler is not None
+    assert cache.sampler.anchor == anchor
+    assert cache.is_exact(clip, 7)
 
 
 def test_an_anchor_of_its_own_stays():
