@@ -55,10 +55,7 @@ class JointPath:
     def bent(self, first: int, last: int) -> complex:
         """Return the joint of a limb between two nodes."""
         places, radii, lengths = self.part(first, last)
-        if len(places) < 3:
-            return complex(places[0])
-        share = joint_share(places, radii, lengths)
-        return complex(places[np.abs(lengths - share * lengths[-1]).argmin()])
+        return complex(places[0]) if len(places) < 3 else _find_bend(places, radii, lengths)
 
 
 def find_limb(plan: BodyPlan, start: int, end: int, tip: int) -> tuple[complex, complex, complex]:
@@ -105,8 +102,13 @@ def find_arm(plan: BodyPlan, start: int, end: int, tip: int) -> tuple[complex, c
     places = np.append(shoulder, way.places[leaving : outer.stop + 1])
     radii = np.append(radius, way.radii[leaving : outer.stop + 1])
     lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+    return shoulder, _find_bend(places, radii, lengths), hand
+
+
+def _find_bend(places: Complexes, radii: Floats, lengths: Floats) -> complex:
+    """Return the joint of a limb along its middle line."""
     share = joint_share(places, radii, lengths)
-    return shoulder, complex(places[np.abs(lengths - share * lengths[-1]).argmin()]), hand
+    return complex(places[np.abs(lengths - share * lengths[-1]).argmin()])
 
 
 def suggest_chain_joints(plan: BodyPlan) -> dict[str, complex]:
