@@ -9,7 +9,6 @@ from app.document import (
     Pose,
     clip_of,
     keyed_pose_at,
-    motion_anchor,
     segment_time_at,
 )
 from app.motion.caches.corrected_frames import CorrectedFrames, reuse_corrections
@@ -47,9 +46,7 @@ class LayerStages:
     ) -> Self:
         """Return the stages of a layer on its own mesh; a sibling's outline data is reused."""
         layer = clip.layer
-        if sibling is not None and sibling.domain.cage is not layer.domain.cage:
-            sibling = None
-        sampler = PoseSampler(layer.domain, anchor=motion_anchor(layer), sibling=sibling)
+        sampler = PoseSampler(layer, sibling=sibling)
         store = InbetweenCache(
             mesh=DeformMesh.fine(layer.domain),
             sampler=sampler,

@@ -71,12 +71,12 @@ def _pin_rows(clip: Clip, frames: int) -> list[Row]:
     for name, each in (("a segment without pins", loose), ("the same with pins", clip)):
 
         def prepare(each: Clip = each) -> None:
-            own = PoseSampler(layer.domain, anchor=layer.anchor, points=handles)
+            own = PoseSampler(layer, points=handles)
             AutoPins(each, layer.variant, own).inbetweens(pinned[0], own)
 
         prepare()  # what is prepared once
         seconds = measure(prepare, repeats=1)
-        mesh = PoseSampler(layer.domain, anchor=layer.anchor)
+        mesh = PoseSampler(layer)
         inbetweens = AutoPins(each, layer.variant, mesh).inbetweens(pinned[0], mesh)
         series = finish(build_series(Positions.of(inbetweens, mesh.sites)))
 

@@ -55,7 +55,7 @@ class Interval:
     def of(cls, layer: Layer, triangles: int) -> "Interval":
         """Lay the paths of a mesh of so many triangles."""
         mesh = triangulate(layer.domain.outline, triangles)
-        sampler = PoseSampler(replace(layer.domain, mesh=mesh), anchor=layer.anchor)
+        sampler = PoseSampler(layer, domain=replace(layer.domain, mesh=mesh))
         return cls(sampler=sampler, first=layer.keys[0].pose, second=layer.keys[1].pose)
 
     @property

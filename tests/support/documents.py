@@ -84,9 +84,9 @@ def disc_domain(n: int = 12) -> MeshedDomain:
     return MeshedDomain(outline=outline, cage=CENTRE + 1.2 * RADIUS * regular_polygon(n), mesh=mesh)
 
 
-def disc_document() -> Document:
+def disc_document(n: int = 12) -> Document:
     """A new document: one layer with one key and no handles."""
-    return Document(layers=(new_layer(PICTURE, disc_domain(), Meshing()),))
+    return Document(layers=(new_layer(PICTURE, disc_domain(n), Meshing()),))
 
 
 def altered(document: Document, **changes: object) -> Document:

@@ -9,7 +9,6 @@ from app.document import (
     Pose,
     SegmentTime,
     keyed_pose_at,
-    motion_anchor,
     segment_keys,
     segment_time_at,
 )
@@ -106,7 +105,7 @@ class CachedFrames:
             inbetweens, time = known.inbetweens, moment.weight
         if inbetweens.sampled_domain is not sampler.sites:
             # In-betweens of an earlier anchor were computed along other paths.
-            sampler = PoseSampler(sampler.domain, anchor=motion_anchor(clip.layer), sibling=sampler)
+            sampler = PoseSampler(clip.layer, domain=sampler.domain, sibling=sampler)
         moved = apply_correction(sampler, inbetweens, time, correction).frame(time)
         triangles = self.mesh.order.triangles(clip, frame)
         return VertexArray(positions=moved.positions, triangles=triangles)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from app.document import Clip, Document, clip_of, motion_anchor
+from app.document import Clip, Document, clip_of
 from app.motion.inbetweens.frame_corrector import (
     BaseMotionFrame,
     FrameCorrector,
@@ -202,12 +202,8 @@ def _prepare(
         return earlier
     layer = clip.layer
     sibling = siblings.get(layer.id)
-    is_own = sibling is not None and sibling.domain.cage is layer.domain.cage
-    if sibling is None or not is_own or sibling.anchor != motion_anchor(layer):
-        outline = layer.domain.outline
-        sibling = PoseSampler(
-            layer.domain, anchor=motion_anchor(layer), points=outline, sibling=sibling
-        )
+    if sibling is None or not sibling.is_for(layer):
+        sibling = PoseSampler(layer, points=layer.domain.outline, sibling=sibling)
     carried = find_parent_motion(document, layer.id, siblings)
     return FrameCorrector(clip, clip.layer.variant, sibling, carried)
 

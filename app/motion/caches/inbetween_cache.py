@@ -10,7 +10,6 @@ from typing import Literal
 from app.document import (
     Clip,
     Pose,
-    motion_anchor,
     pose_segments,
 )
 from app.motion.caches.cached_frames import CachedFrames
@@ -105,7 +104,7 @@ class InbetweenCache(CachedFrames):
         if needs_correction(clip):
             # Corrections need the whole segment.
             return None
-        if sampler is None or sampler.anchor != motion_anchor(layer):
+        if sampler is None or not sampler.is_for(layer):
             return None
         return partial(compute_frame, clip, frame, self.mesh, sampler, keep=self._poses())
 
@@ -155,8 +154,9 @@ class InbetweenCache(CachedFrames):
     def add(self, found: CacheUpdate) -> None:
         """Add the result of a job for any clip."""
         present, sampler = self.memory.present, found.sampler
-        anchors = {motion_anchor(clip.layer) for clip in present}
-        if sampler is not None and (not anchors or sampler.anchor in anchors):
+        if sampler is not None and (
+            not present or any(sampler.is_for(clip.layer) for clip in present)
+        ):
             self.sampler = sampler
         for key, newer in found.segments.items():
             self.memory.add(key, newer)

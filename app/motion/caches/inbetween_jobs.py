@@ -3,7 +3,7 @@
 from collections.abc import Generator, Mapping, Sequence
 from typing import NamedTuple
 
-from app.document import Clip, Pose, motion_anchor, pose_segments, segment_time_at
+from app.document import Clip, Pose, pose_segments, segment_time_at
 from app.motion.inbetweens.frame_corrector import needs_correction
 from app.motion.inbetweens.pins.auto_pins import AutoPins
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -91,7 +91,7 @@ def compute_segments(
 ) -> CacheUpdate:
     """Prepare the in-betweens of the segments with these numbers; on a worker thread.
 
-    A sampler of the mesh and the layer's anchor is used; another sampler of the same outline is
+    The layer's sampler on the mesh is used; another sampler of the same outline is
     reused in part. Samples of the poses `keep` stay, besides those of the clip's poses.
     """
     layer, every = clip.layer, pose_segments(clip)
@@ -106,12 +106,8 @@ def compute_segments(
                 for number in wanted
             },
         )
-    if (
-        sampler is None
-        or sampler.domain is not mesh.domain
-        or sampler.anchor != motion_anchor(layer)
-    ):
-        sampler = PoseSampler(mesh.domain, anchor=motion_anchor(layer), sibling=sampler)
+    if sampler is None or sampler.domain is not mesh.domain or not sampler.is_for(layer):
+        sampler = PoseSampler(layer, domain=mesh.domain, sibling=sampler)
     pins = AutoPins(clip, layer.variant, sampler)
     intervals = {
         segment_key(clip, number): CachedSegment(

@@ -1,6 +1,6 @@
 """The motion of a clip at any frame, for exports, attachments and checks."""
 
-from app.document import Clip, Variant, motion_anchor
+from app.document import Clip, Variant
 from app.motion.inbetweens.frame_corrector import FrameCorrector, needs_correction
 from app.motion.inbetweens.keyframe_motion import KeyframeMotion
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -14,7 +14,7 @@ class Animation:
     """The motion of a clip at a sampler's points, with sliders, tracks and springs.
 
     The variant is by default the layer's own, and the points, complex128 (m,), are the vertices of
-    the domain's mesh. An earlier sampler is reused if its domain and anchor are the layer's.
+    the domain's mesh. An earlier sampler is reused if it is for the layer on its own mesh.
     `carried` returns the rigid motion of the layer at a frame, for scene-space tracks, by default
     the identity.
 
@@ -35,12 +35,10 @@ class Animation:
         if (
             sampler is None
             or sampler.domain is not clip.layer.domain
-            or sampler.anchor != motion_anchor(clip.layer)
+            or not sampler.is_for(clip.layer)
             or (points is not None and points is not sampler.sites.points)
         ):
-            sampler = PoseSampler(
-                clip.layer.domain, anchor=motion_anchor(clip.layer), points=points
-            )
+            sampler = PoseSampler(clip.layer, points=points, sibling=sampler)
         self.sampler = sampler
         self.base = KeyframeMotion(clip, self.variant, sampler)
         self.carried = carried

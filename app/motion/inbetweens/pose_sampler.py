@@ -1,20 +1,22 @@
-"""Samples of poses at points of a domain, and in-betweens there."""
+"""Samples of poses at points of a layer, and in-betweens there."""
 
 import threading
-from collections.abc import Sequence, Set as AbstractSet
+from collections.abc import Callable, Sequence, Set as AbstractSet
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
-from app.document import Pose, PoseSegment, Variant
+from app.document import Layer, Pose, PoseSegment, Variant, motion_anchor
 from app.motion.inbetweens.content_cache import digest
 from app.motion.inbetweens.outline_cache import (
     SAMPLED,
     OutlineCache,
+    Sized,
     have_same_outline,
     nbytes_or_0,
 )
-from engine.arrays import Complexes, Indices, Integers, freeze, nbytes_of
+from engine.arrays import Complexes, Integers, freeze, nbytes_of
 from engine.dirichlet import Extension
 from engine.domain import MeshedDomain
 from engine.interpolation import (
@@ -36,13 +38,14 @@ from engine.interpolation import (
     sample_domain,
     sample_keyframes,
 )
-from engine.maps import Boundary, Bounds, HarmonicMap, LocalBounds
+from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
-from engine.sliders import FrameSolver, SliderPoses
+
+Cached = TypeVar("Cached", bound=Sized)
 
 
 class PoseSampler:
-    """Points of a domain for in-betweens, with the samples of poses there.
+    """Points of a layer for its in-betweens, with the samples of poses there.
 
     The samples of each pose are cached; poses are frozen, so samples stay valid. The class is
     thread-safe. `forget_extension` frees `extension_bytes` bytes. Raises an `EngineError` if a
@@ -50,8 +53,8 @@ class PoseSampler:
 
     Parameters
     ----------
-    anchor : complex, optional
-        None lets the engine choose.
+    domain : MeshedDomain, optional
+        The layer's domain on another mesh.
     points : complex128, shape (m,), optional
         By default the vertices of the domain's mesh.
     values_at : complex128, shape (v,), optional
@@ -62,17 +65,18 @@ class PoseSampler:
 
     def __init__(
         self,
-        domain: MeshedDomain,
+        layer: Layer,
         *,
-        anchor: complex | None,
+        domain: MeshedDomain | None = None,
         points: Complexes | None = None,
         values_at: Complexes | None = None,
         sibling: "PoseSampler | None" = None,
     ) -> None:
+        domain, anchor = domain or layer.domain, motion_anchor(layer)
         if sibling is not None and not have_same_outline(domain, sibling.domain):
             sibling = None
         self.domain: MeshedDomain = domain
-        self.anchor = anchor
+        self._anchor = anchor
         triangles = domain.mesh.triangles if points is None else None
         points = domain.mesh.vertices if points is None else points
         # Content that determines the samples.
@@ -101,6 +105,10 @@ class PoseSampler:
         # A lock of its own, so that no other method waits for the extension.
         self._extension_lock = threading.RLock()
         self.known: OutlineCache = OutlineCache(domain) if sibling is None else sibling.known
+
+    def is_for(self, layer: Layer) -> bool:
+        """Return whether in-betweens of a layer, on any of its meshes, are computed here."""
+        return have_same_outline(self.domain, layer.domain) and self._anchor == motion_anchor(layer)
 
     @property
     def extension(self) -> Extension:
@@ -135,9 +143,10 @@ class PoseSampler:
                     holes=self.domain.holes,
                     logs=pose.logs,
                 )
-                key = "samples", *self._content, digest(pose.phi, pose.psi, pose.logs)
-                self._samples[pose] = SAMPLED.find(
-                    key, lambda: sample_keyframes([f], self.sites)[0], nbytes_or_0
+                self._samples[pose] = self.find(
+                    "samples",
+                    digest(pose.phi, pose.psi, pose.logs),
+                    lambda: sample_keyframes([f], self.sites)[0],
                 )
             return self._samples[pose]
 
@@ -167,44 +176,13 @@ class PoseSampler:
                 self._basis = SpanBasis.of(sites.boundary.span, sites.paths.nodes)
             return self._basis
 
-    def basis_of(self, forms: Complexes) -> SpanBasis:
-        """Return functions with coefficients (n, j) in the span at the nodes, cached by content."""
-        key = ("forms", *self._content, digest(forms))
-        return SAMPLED.find(key, partial(self.basis.combined, forms), nbytes_or_0)
+    def find(self, kind: str, content: bytes, compute: Callable[[], Cached]) -> Cached:
+        """Return cached data of a kind at these points by its content, computed if missing."""
+        return SAMPLED.find((kind, *self._content, content), compute, nbytes_or_0)
 
     def inbetweens_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a segment; motion through smooth keys keeps the limits."""
         return self._prepared(self.segment_of(segment, bounds, variant), variant)
-
-    def slider_poses(self, poses: Sequence[Pose], turns: Indices) -> SliderPoses:
-        """Return poses of sliders with their full turns here, cached by content."""
-        content = digest(turns, *(each for p in poses for each in (p.phi, p.psi, p.logs)))
-
-        def make() -> SliderPoses:
-            return SliderPoses.of([self.samples(pose) for pose in poses], turns, self.sites)
-
-        return SAMPLED.find(("slider poses", *self._content, content), make, nbytes_or_0)
-
-    def slider_solver(
-        self,
-        poses: Sequence[Pose],
-        turns: Indices,
-        bounds: LocalBounds,
-        pins: Complexes,
-        *,
-        is_anchored: bool,
-    ) -> FrameSolver:
-        """Return the solver of frames with these poses of sliders, cached by content."""
-        maps = [self.samples(pose).map for pose in poses]
-        content = digest(
-            *(*self.domain.loops, *self.domain.cages, turns, pins),
-            *map(np.atleast_1d, (bounds.k, bounds.sigma_a, bounds.sigma_b)),
-            *(each for f in maps for each in (f.phi, f.psi, f.logs)),
-        )
-        key = ("slider", content, self.sites.anchor, is_anchored)
-        given = (maps, turns, self.sites, self.known.transform, bounds, pins)
-        make = partial(FrameSolver.of, *given, is_anchored=is_anchored)
-        return SAMPLED.find(key, make, nbytes_or_0)
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Return whether a single in-between takes less time than the whole segment."""
@@ -279,7 +257,7 @@ class PoseSampler:
 
     def _sheets(self, samples: Sequence[KeyframeSamples], turns: Sequence[int]) -> Integers:
         """Return the branches of the logarithms, with full turns between neighbours."""
-        if self.anchor is None:
+        if self._anchor is None:
             return self.known.sheets(samples, turns, self.sites.boundary)
         return root_sheets(np.array([each.anchor_fz for each in samples]), turns)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from copy import copy
+from functools import partial
 
 import numpy as np
 
@@ -11,11 +12,12 @@ from app.document import (
     Pose,
     Variant,
     limits_along,
-    motion_anchor,
     slider_poses,
     slider_weights_at,
     with_stiffness,
 )
+from app.motion.inbetweens.content_cache import digest
+from app.motion.inbetweens.outline_cache import SAMPLED, nbytes_or_0
 from app.motion.inbetweens.pins.auto_pins import BESIDE
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection, SolvedSliders
@@ -23,7 +25,7 @@ from app.motion.inbetweens.segment_keys import frame_content
 from engine.arrays import Complexes, Indices
 from engine.geometry import diameter
 from engine.interpolation import Inbetweens
-from engine.sliders import FrameSolution, FrameSolver, SliderFrame
+from engine.sliders import FrameSolution, FrameSolver, SliderFrame, SliderPoses
 
 UNMOVED = 0.5  # pixels between a target in a pose and the handle at rest
 
@@ -81,16 +83,9 @@ class SliderStage:
         if self._prepared is None:
             poses, turns = _apart(slider_poses(self.clip))
             layer, sampler = self.clip.layer, self._sampler
-            solver = sampler.slider_solver(
-                poses,
-                turns,
-                limits_along(layer, with_stiffness(layer, sampler.sites.boundary)),
-                _pins(layer, poses, sampler.sites.anchor),
-                is_anchored=layer.has_parent,
-            )
+            solver = _solver(layer, sampler, poses, turns)
             beside = PoseSampler(
-                layer.domain,
-                anchor=motion_anchor(layer),
+                layer,
                 points=np.array([sampler.sites.anchor]),
                 values_at=solver.nodes,
                 sibling=sampler,
@@ -120,9 +115,43 @@ def add_sliders(
     """Return an in-between of a sampler at a time with sliders."""
     solution, poses = sliders
     extension = None if solution.densities is None else sampler.extension
-    basis = None if solution.forms is None else sampler.basis_of(solution.forms)
-    found = sampler.slider_poses(*_apart(poses))
+    forms = solution.forms
+    basis = None
+    if forms is not None:
+        basis = sampler.find("forms", digest(forms), partial(sampler.basis.combined, forms))
+    found = _sampled_poses(sampler, *_apart(poses))
     return found.add_to(base, time, solution, extension, basis)
+
+
+def _sampled_poses(sampler: PoseSampler, poses: Sequence[Pose], turns: Indices) -> SliderPoses:
+    """Return poses of sliders with their full turns at a sampler's points, cached by content."""
+    content = digest(turns, *(each for p in poses for each in (p.phi, p.psi, p.logs)))
+
+    def make() -> SliderPoses:
+        return SliderPoses.of([sampler.samples(pose) for pose in poses], turns, sampler.sites)
+
+    return sampler.find("slider poses", content, make)
+
+
+def _solver(
+    layer: Layer, sampler: PoseSampler, poses: tuple[Pose, ...], turns: Indices
+) -> FrameSolver:
+    """Return the solver of frames with these poses of sliders.
+
+    It is cached by content for all samplers of the outline and the anchor.
+    """
+    domain, sites = layer.domain, sampler.sites
+    bounds = limits_along(layer, with_stiffness(layer, sites.boundary))
+    pins, is_anchored = _pins(layer, poses, sites.anchor), layer.has_parent
+    maps = [sampler.samples(pose).map for pose in poses]
+    content = digest(
+        *(*domain.loops, *domain.cages, turns, pins),
+        *map(np.atleast_1d, (bounds.k, bounds.sigma_a, bounds.sigma_b)),
+        *(each for f in maps for each in (f.phi, f.psi, f.logs)),
+    )
+    given = (maps, turns, sites, sampler.known.transform, bounds, pins)
+    make = partial(FrameSolver.of, *given, is_anchored=is_anchored)
+    return SAMPLED.find(("slider", content, sites.anchor, is_anchored), make, nbytes_or_0)
 
 
 def _apart(poses: Sequence[tuple[Pose, int]]) -> tuple[tuple[Pose, ...], Indices]:

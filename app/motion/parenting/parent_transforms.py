@@ -15,7 +15,6 @@ from app.document import (
     clip_of,
     layer_value_at,
     limb_ends,
-    motion_anchor,
 )
 from app.motion.inbetweens.animation import Animation
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -273,9 +272,7 @@ def layer_animation(
 ) -> Animation:
     """Return the motion of points (m,) of a layer that may be attached."""
     layer = document.layer(identity)
-    sampler = PoseSampler(
-        layer.domain, anchor=motion_anchor(layer), points=points, sibling=siblings.get(identity)
-    )
+    sampler = PoseSampler(layer, points=points, sibling=siblings.get(identity))
     return Animation(clip_of(document, identity), sampler=sampler, carried=carried)
 
 

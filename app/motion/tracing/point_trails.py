@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Pose, keyed_pose_at, motion_anchor, segment_time_at
+from app.document import Clip, Pose, keyed_pose_at, segment_time_at
 from app.motion.inbetweens.animation import Animation
 from app.motion.inbetweens.frame_corrector import needs_correction
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -52,11 +52,9 @@ class PointTrails:
         self._carried = carried
         self._is_corrected = needs_correction(clip)
         self._animation: Animation | None = None
-        if earlier is None:
+        if earlier is None or earlier.sampler is None:
             return
-        layer, own = earlier.clip.layer, clip.layer
-        is_same = layer.domain is own.domain and motion_anchor(layer) == motion_anchor(own)
-        if is_same and np.array_equal(points, earlier.points):
+        if earlier.sampler.is_for(clip.layer) and np.array_equal(points, earlier.points):
             most = REMEMBERED * (1 + clip.frames.last - clip.frames.first)
             self.sampler = earlier.sampler
             self.known = dict(list(earlier.known.items())[-most:])
@@ -92,9 +90,8 @@ class PointTrails:
 
     def _animate(self) -> Animation:
         if self._animation is None:
-            layer = self.clip.layer
             sampler = self.sampler or PoseSampler(
-                layer.domain, anchor=motion_anchor(layer), points=self.points, sibling=self._sibling
+                self.clip.layer, points=self.points, sibling=self._sibling
             )
             self._animation = Animation(self.clip, sampler=sampler, carried=self._carried)
             self.sampler = sampler

@@ -38,9 +38,7 @@ def fit_shown_pose(
         return resting
     after = moment.weight > 0.5
     near = resting or clip.keys[segment_keys(clip)[moment.segment][after]].pose
-    sampler = PoseSampler(
-        layer.domain, anchor=layer.anchor, points=boundary.points, sibling=sibling
-    )
+    sampler = PoseSampler(layer, points=boundary.points, sibling=sibling)
     animation = Animation(clip, points=boundary.points, sampler=sampler)
     base = animation.base
     found, time = base.segment_at(frame) if with_sliders else base.unslid_at(frame)

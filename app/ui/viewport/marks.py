@@ -9,7 +9,6 @@ from app.document import (
     Clip,
     Track,
     misses_target,
-    motion_anchor,
     pinned_handles,
     segment_time_at,
     track_at,
@@ -132,7 +131,7 @@ def find_anchor(project: Project, shown: LayerFrame) -> complex | None:
     """Return the anchor's place in the shown frame; None if a handle marks it or none exists."""
     layer, sampler = shown.clip.layer, project.layer_runtime.store.sampler
     rest = layer.anchor
-    if rest is None and sampler is not None and sampler.anchor == motion_anchor(layer):
+    if rest is None and sampler is not None and sampler.is_for(layer):
         rest = sampler.sites.anchor
     if rest is None and len(project.document.layers) > 1:
         # Before any motion, the anchor is visible so that the layer can be attached there.

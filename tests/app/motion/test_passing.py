@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from documents import altered, disc_domain
+from documents import altered, disc_document
 from key_rows import jump, prepared, row
 from numpy.testing import assert_allclose
 
@@ -79,9 +79,9 @@ def test_how_much_of_their_velocity_keys_keep_is_reported():
 
 
 def test_transform_is_made_anew_when_it_was_cancelled():
-    domain = disc_domain(11)  # of which nothing is known yet
-    sampler = PoseSampler(domain, anchor=None)
-    sibling = PoseSampler(domain, anchor=None, sibling=sampler)
+    layer = disc_document(11).layers[0]  # of whose outline nothing is known yet
+    sampler = PoseSampler(layer)
+    sibling = PoseSampler(layer, sibling=sampler)
 
     def end(share):
         raise LissomError(f"it was cancelled at {share:.0%}")

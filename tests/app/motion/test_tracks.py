@@ -548,7 +548,7 @@ def test_corrections_are_solved_anew_for_another_anchor_and_another_method():
         parent = replace(free.layers[0], id=1, name="parent", tracks=())
         layer = replace(free.layers[0], **change)
         clip = clip_of(replace(free, layers=(layer, parent)), 0)
-        sharing = PoseSampler(layer.domain, anchor=layer.anchor, points=points, sibling=sampler)
+        sharing = PoseSampler(layer, points=points, sibling=sampler)
         shared = Animation(clip, sampler=sharing, points=sharing.sites.points)
         for frame in (0.0, float(SHORT)):
             fresh = Animation(clip, points=points)
@@ -566,7 +566,7 @@ def test_frames_of_an_earlier_anchor_are_corrected_along_their_own_paths():
     for each in (clip, moved):
         store.set_needed_clips([each], [clip], 0)
         store.add(store.segments_job(each, store.missing_segments(each, 0))())
-    assert store.sampler.anchor == 30 + 45j
+    assert store.sampler.is_for(moved.layer)
     animation = Animation(clip)
     correction = animation.corrections.correction_at(3.0)
     shown = store.vertices(clip, 3, correction=correction).positions
@@ -587,8 +587,10 @@ def test_nothing_of_an_earlier_outline_serves_another_one():
     first = pulled(14 - 6j)
     clip, layer = clip_of(first, 0), first.layers[0]
     sampler = animate(first).sampler
-    domain = within(still_document(), layer.domain.outline + 1j).layers[0].domain
-    other = PoseSampler(domain, anchor=None, points=domain.outline, sibling=sampler)
+    moved = within(still_document(), layer.domain.outline + 1j).layers[0]
+    domain = moved.domain
+    other = PoseSampler(moved, points=domain.outline, sibling=sampler)
+    assert not sampler.is_for(moved)
     assert other.known is not sampler.known
     assert other.sites.boundary.span.equals(Boundary.sample(domain).span)
     # Its corrections are of other functions, too.

@@ -42,7 +42,7 @@ def test_a_shape_turns_the_shorter_way_in_the_mean():
     document = ladle()
     layer = document.layers[0]
     along = START + np.linspace(0, 1, 5) * (END - START)
-    sampler = PoseSampler(layer.domain, anchor=None, points=along)
+    sampler = PoseSampler(layer, points=along)
     assert abs(sampler.sites.anchor - END) < DISC / 2  # the disc's own shorter way is back
     middle = turns(sampler, layer, curled(layer), 0.5)
     assert_allclose(middle, 0.5 * CURL * np.linspace(0, 1, 5), atol=0.1)
@@ -51,7 +51,7 @@ def test_a_shape_turns_the_shorter_way_in_the_mean():
 def test_a_given_anchor_turns_the_shorter_way_itself():
     document = ladle()
     layer = document.layers[0]
-    sampler = PoseSampler(layer.domain, anchor=END, points=np.array([END]))
+    sampler = PoseSampler(replace(layer, anchor=END), points=np.array([END]))
     middle = turns(sampler, layer, curled(layer), 0.5)
     assert_allclose(middle, 0.5 * (CURL - 2 * np.pi), atol=0.05)
 
@@ -84,7 +84,7 @@ def test_bones_turn_about_the_body_that_carries_them(disc):
     cache.set_needed_clips([clip], (), 7)
     cache.add(cache.segments_job(clip, cache.missing_segments(clip, 7))())
     assert cache.sampler is not None
-    assert cache.sampler.anchor == anchor
+    assert cache.sampler.is_for(layer)
     assert cache.is_exact(clip, 7)
 
 

@@ -95,7 +95,7 @@ def test_planted_feet_keep_one_speed_and_shins_their_length(scenes):
         for pair in (("hip.L", "knee.L"), ("knee.L", "foot.L"))
     }
     limbs, walk = find_limbs(layer), giving.applied
-    sampler = PoseSampler(layer.domain, anchor=layer.anchor, points=limbs.points)
+    sampler = PoseSampler(layer, points=limbs.points)
     animation = Animation(clip, points=limbs.points, sampler=sampler)
     # The left foot stands from the first frame on, for half of the cycle.
     feet, knees = [], []

@@ -117,7 +117,7 @@ def test_in_between_is_of_the_seen_pose_until_the_drag_rests(window, bent, check
 @pytest.fixture
 def check(bent):
     """What fails unless the right key is shown, or exactly an in-between of the right two."""
-    sampler = PoseSampler(bent.layer_runtime.store.mesh.domain, anchor=None)
+    sampler = PoseSampler(bent.layer, domain=bent.layer_runtime.store.mesh.domain)
 
     def look():
         shown, clip = bent.layer_runtime.shown, bent.clip

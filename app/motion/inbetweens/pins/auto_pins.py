@@ -13,7 +13,6 @@ from app.document import (
     find_chains,
     find_limbs,
     ground_velocity_at,
-    motion_anchor,
     pinned_segments,
     pose_segments,
     with_stiffness,
@@ -222,8 +221,7 @@ def prepare_corrector(
         points = np.append(points, more)
     corrector = corrector_for(with_stiffness(layer, sites.boundary), sites.anchor, points)
     sampler = PoseSampler(
-        layer.domain,
-        anchor=motion_anchor(layer),
+        layer,
         points=points,
         values_at=value_points_for_corrections(corrector),
         sibling=sibling,
