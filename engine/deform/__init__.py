@@ -6,8 +6,9 @@ Imports: `engine.dirichlet`, `engine.maps`, `engine.geometry`.
 """
 
 from engine.deform.deformer import Deformer as Deformer
-from engine.deform.forces.armature import AIM_STIFFNESS as AIM_STIFFNESS, Armature as Armature
+from engine.deform.forces.armature import Armature as Armature
 from engine.deform.forces.bones import Aim as Aim, Hinge as Hinge, Shaft as Shaft
+from engine.deform.forces.posed_armature import AIM_STIFFNESS as AIM_STIFFNESS
 from engine.deform.forces.pulls import (
     MAX_PULL_FORCE as MAX_PULL_FORCE,
     BoundedPull as BoundedPull,

@@ -8,6 +8,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes
+from engine.deform.forces.posed_armature import PosedArmature
 from engine.deform.handles import Handles, HandleTargets
 from engine.deform.model.evaluation import Evaluation
 from engine.maps import HarmonicMap
@@ -116,9 +117,10 @@ def cut_to_radius(
         turn = np.angle(np.exp(1j * (targets.rotations[turning] - now)))
         near[turning] = now + np.minimum(np.maximum(turn, -most), most)
         leashed = leashed or bool(np.abs(turn).max() > most)
-    aims = targets.aims
-    if handles.armature is not None and aims is not None:
-        aims, is_far = handles.armature.cut_aims(jet.shaft_positions, aims, distance)
+    aims, armature = targets.aims, handles.armature
+    if armature is not None:
+        posed = PosedArmature(armature=armature, positions=jet.shaft_positions, aims=aims)
+        aims, is_far = posed.cut_aims(distance)
         leashed = leashed or is_far
     return HandleTargets(positions + cut * pull, near, targets.pulls, aims), leashed
 

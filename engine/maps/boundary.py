@@ -163,6 +163,22 @@ class Boundary:
         own = np.flatnonzero(self.weights)
         return own, np.searchsorted(own, [*self.starts, len(self.points)]).tolist()
 
+    @cached_property
+    def has_added_samples(self) -> bool:
+        """Whether it was refined."""
+        return len(self.original_samples[0]) < len(self.points)
+
+    @cached_property
+    def original_neighbours(self) -> tuple[Indices, Indices]:
+        """The original samples before and after each sample, counted among the original ones.
+
+        (m,) each. Both are the sample itself where it is original.
+        """
+        own, ends = self.original_samples
+        first = np.searchsorted(own, np.arange(len(self.points)), side="right") - 1
+        following = next_on_loop(np.array(ends[:-1]), len(own))[first]
+        return readonly(first), readonly(np.where(self.weights > 0, first, following))
+
     @property
     def lengths(self) -> Floats:
         """The weights of the samples (m,) in means over the boundary, with sum 1."""

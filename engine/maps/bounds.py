@@ -40,13 +40,12 @@ class LocalBounds:
     def at(self, boundary: Boundary) -> "LocalBounds":
         """Return the limits at all samples of a boundary, added samples included."""
         limits = self.k, self.sigma_a, self.sigma_b
-        if not any(isinstance(limit, np.ndarray) for limit in limits):
+        are_local = [isinstance(limit, np.ndarray) for limit in limits]
+        if not any(are_local) or (all(are_local) and not boundary.has_added_samples):
             return self
-        own, ends = boundary.original_samples
-        first = np.searchsorted(own, np.arange(len(boundary.points)), side="right") - 1
-        is_own = boundary.weights > 0
-        second = np.where(is_own, first, next_on_loop(np.array(ends[:-1]), len(own))[first])
-        k, sigma_a, sigma_b = (np.broadcast_to(limit, len(own)) for limit in limits)
+        first, second = boundary.original_neighbours
+        count = 1 + int(first[-1])
+        k, sigma_a, sigma_b = (np.broadcast_to(limit, count) for limit in limits)
         return LocalBounds(
             k=np.maximum(k[first], k[second]),
             sigma_a=np.maximum(sigma_a[first], sigma_a[second]),

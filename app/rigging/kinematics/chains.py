@@ -175,24 +175,21 @@ def _change(
 
     `arms` are the ways from the joints to the end. Bends at an end of their range do not leave it.
     """
-    free = np.arange(len(arms))
+    free, tiny = np.arange(len(arms)), 1e-12 * (float(np.vdot(arms, arms).real) or 1.0) * np.eye(2)
     while True:
         own, here = arms[free], bent[free]
         # The end moves by i a for each bend of a joint, and two bends turn the arm of the later.
         rows = np.array([-own.imag, own.real])
-        square = rows @ rows.T
-        square += 1e-12 * (np.trace(square) or 1.0) * np.eye(2)
-        solved = np.linalg.solve(square, np.column_stack([[miss.real, miss.imag], rows @ here]))
-        across, force = rows.T @ solved[:, 0], solved[:, 1]
-        later = own[np.maximum.outer(np.arange(len(free)), np.arange(len(free)))]
-        second = np.eye(len(free)) + force[0] * later.real + force[1] * later.imag
-        step = across
+        inverse = np.linalg.solve(rows @ rows.T + tiny, rows)
+        step, force = miss.real * inverse[0] + miss.imag * inverse[1], inverse @ here
         if len(free) > 2:
-            along = np.linalg.qr(rows.T, mode="complete").Q[:, 2:]
-            values, vectors = np.linalg.eigh(along.T @ second @ along)
-            along = along @ vectors
-            slope = along.T @ (here + second @ across)
-            step = across - along @ (slope / np.maximum(np.abs(values), LEAST_CURVATURE))
+            # Of bends that leave the end in place, the Hessian and the slope.
+            order, one = np.arange(len(free)), np.eye(len(free))
+            stays, later = one - rows.T @ inverse, own[np.maximum.outer(order, order)]
+            second = one + force[0] * later.real + force[1] * later.imag
+            values, vectors = np.linalg.eigh(stays @ second @ stays)
+            slope = (stays @ (here + second @ step)) @ vectors
+            step = step - vectors @ (slope / np.maximum(np.abs(values), LEAST_CURVATURE))
         leaves = (is_low[free] & (step < 0)) | (is_high[free] & (step > 0))
         if not leaves.any():
             break

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 from app.document import Pose, Target, misses_target
+from app.solving.drag.limb_targets import LimbTargets
 from app.solving.drag.rig import PosedRig, Rig, pins_of
 from engine.deform import BoundedPull, State
 
@@ -14,12 +15,13 @@ class DragSolver:
     """The state of a drag; every map in between is certified.
 
     The deformer has the layer's limits, widened if the first pose needs it. `pins` are the targets
-    of the fixed points.
+    of the fixed points. `followed` are the last targets, and where limbs are for them.
     """
 
     posed: PosedRig
     state: State
     pins: tuple[Target, ...] = ()
+    followed: tuple[Mapping[int, Target], LimbTargets] | None = None
 
     @classmethod
     def begin(cls, rig: Rig, pose: Pose) -> Self:
@@ -49,7 +51,9 @@ class DragSolver:
         `pulled` are the ids of dragged handles. They are included even with springs.
         """
         rig = Rig.of(self.rig.layer, self.rig, pulled)
-        posed, followed = self.posed.with_rig(rig).follow(targets)
+        posed, followed = self.posed, self._known(targets)
+        if followed is None or rig is not posed.rig:
+            posed, followed = posed.with_rig(rig).follow(targets)
         state, now = self.state, posed.straighten(followed, self.state.map)
         wanted = posed.build_targets(now, self.pins, hands)
         for _ in range(steps):
@@ -58,7 +62,7 @@ class DragSolver:
             state = posed.deformer.step(state, wanted)
             if state.status.is_final:
                 break
-        return replace(self, posed=posed, state=state)
+        return replace(self, posed=posed, state=state, followed=(targets, followed))
 
     def release(
         self, targets: Mapping[int, Target], hands: Sequence[BoundedPull]
@@ -91,6 +95,10 @@ class DragSolver:
 
     def make_pose(self, targets: Mapping[int, Target]) -> Pose:
         """Return the current state as a pose with these targets."""
-        return self.posed.make_pose(
-            self.state.map, self.posed.follow(targets)[1].targets, self.state.certificate
-        )
+        followed = self._known(targets) or self.posed.follow(targets)[1]
+        return self.posed.make_pose(self.state.map, followed.targets, self.state.certificate)
+
+    def _known(self, targets: Mapping[int, Target]) -> LimbTargets | None:
+        """Return the targets with limbs of the last steps if they were for these targets."""
+        known = self.followed
+        return known[1] if known is not None and known[0] == targets else None

@@ -127,19 +127,17 @@ class RigidShafts:
         motions: Motions,
         shafts: Indices,
         places: Complexes,
-        are_places: Floats | None = None,
+        are_places: Floats,
     ) -> Complexes:
         """Return the weights (2, a, t) of changes in the real and imaginary parts of dR(z)."""
-        held = np.ones(len(shafts)) if are_places is None else are_places
-        arms = 1j * motions.turns[shafts] * (places - held * self.centres[shafts])
+        arms = 1j * motions.turns[shafts] * (places - are_places * self.centres[shafts])
         arms /= np.maximum(np.abs(motions.correlations[shafts]), TINY)
         turned = 1j * motions.turns[self.owners] * self.offsets
-        is_own = self._is_of(shafts)
-        parts = [
-            is_own * (unit * held[:, None] / self.counts[self.owners] + part[:, None] * turned)
-            for unit, part in ((1.0, arms.real), (1j, arms.imag))
-        ]
-        return np.array(parts, np.complex128)
+        is_own, means = self._is_of(shafts), are_places[:, None] / self.counts[self.owners]
+        parts = np.empty((2, *is_own.shape), np.complex128)
+        for part, unit, arm in zip(parts, (1.0, 1j), (arms.real, arms.imag), strict=True):
+            part[:] = is_own * (unit * means + arm[:, None] * turned)
+        return parts
 
     def means(self, values: Complexes) -> Complexes:
         """Return the means (s, …) of values of the points (t, …) of each shaft."""

@@ -54,28 +54,14 @@ class Ties(NamedTuple):
         pull = 2.0 * self.stiffness * excess / self._lengths * ways / distances
         return np.concatenate([pull, -pull])
 
-    def hessian_product(self, positions: Complexes, changes: Complexes) -> Complexes:
-        """Return the product (2 k,) of the Hessian with changes of the points."""
-        directions, along, across = self._curvatures(positions)
-        one, other = np.split(changes, 2)
-        turned = directions.conj() * (one - other)
-        pull = directions * (along * turned.real + 1j * across * turned.imag)
-        return np.concatenate([pull, -pull])
-
-    def weights(self, positions: Complexes) -> Complexes:
-        """Return weights w (…, 2 k) of changes d: the Hessian is that of the squares of Re Σ w̄ d.
-
-        Ties that are not stretched have none.
-        """
-        directions, along, across = self._curvatures(positions)
-        is_stretched = np.flatnonzero(along)
-        rows = np.zeros((2, len(is_stretched), 2, len(along)), np.complex128)
-        own = np.arange(len(is_stretched))
-        for row, turn, curvature in zip(rows, (1.0, 1j), (along, across), strict=True):
-            pull = turn * directions[is_stretched] * np.sqrt(curvature[is_stretched])
-            row[own, 0, is_stretched], row[own, 1, is_stretched] = pull, -pull
-        joined: Complexes = rows.reshape(2 * len(is_stretched), 2 * len(along))
-        return joined
+    def curvatures(self, positions: Complexes) -> "TieCurvatures":
+        """Return the Hessian of the energy with the points (2 k,) at these positions."""
+        ways, distances, excess = self._stretched(positions)
+        return TieCurvatures(
+            directions=ways / distances,
+            along=2.0 * self.stiffness / self._lengths**2 * (excess > 0),
+            across=2.0 * self.stiffness * excess / (self._lengths * distances),
+        )
 
     @property
     def _lengths(self) -> Floats:
@@ -84,14 +70,44 @@ class Ties(NamedTuple):
 
     def _stretched(self, positions: Complexes) -> tuple[Complexes, Floats, Floats]:
         """Return the ways d of the ties (k,), their lengths, and the excess e."""
-        starts, ends = np.split(positions, 2)
-        ways = starts - ends
+        count = len(self.starts)
+        ways = positions[:count] - positions[count:]
         distances = np.maximum(np.abs(ways), np.finfo(np.float64).tiny)
         return ways, distances, np.maximum(distances / self._lengths - 1.0, 0.0)
 
-    def _curvatures(self, positions: Complexes) -> tuple[Complexes, Floats, Floats]:
-        """Return n of each tie, and the Hessian's parts along and across it."""
-        ways, distances, excess = self._stretched(positions)
-        along = 2.0 * self.stiffness / self._lengths**2 * (excess > 0)
-        across = 2.0 * self.stiffness * excess / (self._lengths * distances)
-        return ways / distances, along, across
+
+class TieCurvatures(NamedTuple):
+    """The Hessian of ties in a pose.
+
+    Parameters
+    ----------
+    directions : complex128, shape (k,)
+        n of each tie.
+    along, across : float64, shape (k,)
+        The parts along and across it.
+    """
+
+    directions: Complexes
+    along: Floats
+    across: Floats
+
+    def product(self, changes: Complexes) -> Complexes:
+        """Return the product (2 k,) with changes of the points."""
+        count = len(self.directions)
+        turned = self.directions.conj() * (changes[:count] - changes[count:])
+        pull = self.directions * (self.along * turned.real + 1j * self.across * turned.imag)
+        return np.concatenate([pull, -pull])
+
+    def weights(self) -> Complexes:
+        """Return weights w (…, 2 k) of changes d: the Hessian is that of the squares of Re Σ w̄ d.
+
+        Ties that are not stretched have none.
+        """
+        is_stretched = np.flatnonzero(self.along)
+        rows = np.zeros((2, len(is_stretched), 2, len(self.along)), np.complex128)
+        own = np.arange(len(is_stretched))
+        for row, turn, curvature in zip(rows, (1.0, 1j), (self.along, self.across), strict=True):
+            pull = turn * self.directions[is_stretched] * np.sqrt(curvature[is_stretched])
+            row[own, 0, is_stretched], row[own, 1, is_stretched] = pull, -pull
+        joined: Complexes = rows.reshape(2 * len(is_stretched), 2 * len(self.along))
+        return joined

@@ -14,8 +14,9 @@ from engine.deform.model.hessian import Reals
 SHIFT, SHIFT_GROWTH = 1e-13, 1e2
 FLOOR = 1e5
 # In single precision each pivot keeps at least this part of its diagonal, else too few digits are
-# left. With handles the part is some thousandths; with one handle, which leaves a rotation, 1e-7.
-LEAST_PIVOT = 1e-4
+# left. With handles the part is some thousandths; with many stiff bones, 1e-4; with one handle,
+# which leaves a rotation, 1e-7.
+LEAST_PIVOT = 1e-5
 
 
 def factor_shifted(hessian: Floats) -> Floats:

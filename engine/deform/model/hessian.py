@@ -102,13 +102,11 @@ def hessian_product(
     rows, coordinates = objective.boundary.basis_derivatives, objective.handles.basis_coordinates
     by_phi = (by_f * frame_f) @ rows + pull.conj() @ coordinates
     by_psi = (by_g * frame_g) @ rows + pull @ coordinates
-    armature = objective.handles.armature
-    if armature is not None:
-        pull = armature.hessian_product(
-            jet.shaft_positions, objective.targets.aims, change.shaft_positions
-        )
-        by_phi += pull.conj() @ armature.basis_coordinates
-        by_psi += pull @ armature.basis_coordinates
+    if (armature := objective.armature_at(jet)) is not None:
+        pull = armature.hessian_product(change.shaft_positions)
+        coordinates = armature.armature.basis_coordinates
+        by_phi += pull.conj() @ coordinates
+        by_psi += pull @ coordinates
     for frame in objective.rotation_frames(jet):
         along = (frame * change.fz[objective.rotation_constraints]).real
         by_phi += (along * frame) @ objective.rotation_rows

@@ -16,10 +16,12 @@ them. In all there are u = 4 r − 2 − 2 q real unknowns for the r functions o
 from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.deform.forces.posed_armature import PosedArmature
 from engine.deform.handles import Handles, HandleTargets
 from engine.deform.model.barrier import Barrier
 from engine.deform.model.energy import RadialDerivatives, symmetric_dirichlet_derivatives
@@ -105,18 +107,17 @@ class Objective:
             if self.targets.pulls is not None:
                 lacking = jet.positions - self.targets.positions
                 value += self.targets.pulls.slack_energy(self.targets.pulls.slack(lacking))
-            if self.handles.armature is not None:
-                value += self.handles.armature.energy(jet.shaft_positions, self.targets.aims)
+            if (armature := self.armature_at(jet)) is not None:
+                value += armature.energy
             if self.rotation_constraints.any():
                 value += self.rotation_stiffness @ self.rotation_errors(jet) ** 2
         return np.inf if np.isnan(value) else float(value)
 
     def target_error(self, jet: Evaluation) -> float:
         """Return the root mean square distance of handles and aims from their targets, over L."""
-        errors, aims = jet.positions - self.targets.positions, self.targets.aims
-        if self.handles.armature is not None and aims is not None:
-            own = self.handles.armature.aim_errors(jet.shaft_positions, aims)
-            errors = np.concatenate([errors, own])
+        errors = jet.positions - self.targets.positions
+        if (armature := self.armature_at(jet)) is not None:
+            errors = np.concatenate([errors, armature.aim_errors])
         squares = np.vdot(errors, errors).real / max(len(errors), 1)
         return sqrt(squares) / self.boundary.size
 
@@ -139,11 +140,10 @@ class Objective:
         pull = 2.0 * self.handles.stiffness * self.targets.target_errors(jet.positions)
         by_phi = pull.conj() @ self.handles.basis_coordinates
         by_psi = pull @ self.handles.basis_coordinates
-        armature = self.handles.armature
-        if armature is not None:
-            pull = armature.gradient(jet.shaft_positions, self.targets.aims)
-            by_phi += pull.conj() @ armature.basis_coordinates
-            by_psi += pull @ armature.basis_coordinates
+        if (armature := self.armature_at(jet)) is not None:
+            pull, coordinates = armature.gradient, armature.armature.basis_coordinates
+            by_phi += pull.conj() @ coordinates
+            by_psi += pull @ coordinates
         if self.rotation_constraints.any():
             # d arg F = Im(dF / F) = Re(−i dF / F).
             angle = 2.0 * self.rotation_stiffness * self.rotation_errors(jet)
@@ -180,10 +180,25 @@ class Objective:
 
     def armature_rows(self, jet: Evaluation) -> tuple[Floats, Floats]:
         """Return the rows (s, u) whose Gram matrices the armature adds and subtracts."""
-        if self.handles.armature is None:
+        if (armature := self.armature_at(jet)) is None:
             none = np.empty((0, len(self.handles.hessian)))
             return none, none
-        return self.handles.armature.rows(self.boundary, jet.shaft_positions, self.targets.aims)
+        return armature.rows(self.boundary)
+
+    def armature_at(self, jet: Evaluation) -> PosedArmature | None:
+        """Return the armature in the pose of a map."""
+        armature = self.handles.armature
+        if armature is None:
+            return None
+        if jet not in self._posed_armatures:
+            self._posed_armatures[jet] = PosedArmature(
+                armature=armature, positions=jet.shaft_positions, aims=self.targets.aims
+            )
+        return self._posed_armatures[jet]
+
+    @cached_property
+    def _posed_armatures(self) -> WeakKeyDictionary[Evaluation, PosedArmature]:
+        return WeakKeyDictionary()
 
     def sampled_gradient(
         self, jet: Evaluation, by_a: Floats, b_per_b: Floats, samples: Indices | slice = slice(None)

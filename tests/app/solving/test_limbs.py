@@ -15,6 +15,8 @@ from app.errors import LissomError
 from app.motion import Animation
 from app.rigging import bend_side, solve_chain
 from app.solving import pose_document
+from app.solving.drag import rig
+from app.solving.drag.drag_solver import DragSolver
 from app.solving.script.keys import NO_END, NO_JOINT
 from app.solving.script.pose_script import parse_pose_script
 
@@ -316,3 +318,18 @@ def test_limbs_fold_and_leave_the_rest_alone(chain, bend):
     # The sharpest folds press on the trunk.
     assert head_error(layer) < (6 if bend <= 90 else 12) * thousandth
     assert layer.is_proven(layer.keys[1].pose)
+
+
+def test_limbs_are_solved_once_for_each_target(monkeypatch):
+    layer, _ = posed({"frame": 0})
+    solved, solve = [], rig.solve_limbs
+    monkeypatch.setattr(rig, "solve_limbs", lambda *a: solved.append(a[-1]) or solve(*a))
+    pose, hand = layer.keys[0].pose, next(h.id for h in layer.handles if h.name == "hand")
+    drag = DragSolver.begin(rig.Rig.of(layer), pose)
+    for place in (365 + 290j, 360 + 285j):
+        moved = replace(pose.targets[hand], position=place)
+        for _ in range(3):
+            targets = {**pose.targets, hand: moved}
+            drag = drag.step_towards(targets, 1)
+            drag.make_pose(targets)
+    assert [targets[hand].position for targets in solved] == [365 + 290j, 360 + 285j]

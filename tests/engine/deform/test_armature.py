@@ -16,6 +16,7 @@ from engine.deform import (
     Shaft,
     Ties,
 )
+from engine.deform.forces.posed_armature import PosedArmature
 from engine.deform.model.hessian import hessian_product
 from engine.domain.material.line_ties import BendingPlace, tie_lines
 from engine.errors import EngineError
@@ -46,6 +47,10 @@ def objective(handles=HANDLES, aims=AIMS):
     return Objective(boundary=BOUNDARY, handles=handles, targets=targets)
 
 
+def posed(armature, positions):
+    return PosedArmature(armature=armature, positions=positions, aims=None)
+
+
 def bent_map():
     cage = BOUNDARY.cage
     return cage * np.exp(0.4j) + 0.03j * cage**2, 0.05 * cage + 0.02 * cage**2
@@ -54,7 +59,7 @@ def bent_map():
 def test_a_armature_costs_nothing_after_a_rigid_motion():
     turned = np.exp(0.7j) * BOUNDARY.cage + 0.3
     jet = objective().evaluate(turned, 0 * turned)
-    assert ARMATURE.energy(jet.shaft_positions, None) == pytest.approx(0.0, abs=1e-9)
+    assert posed(ARMATURE, jet.shaft_positions).energy == pytest.approx(0.0, abs=1e-9)
     moved = ARMATURE.shafts.carried(
         ARMATURE.motions(jet.shaft_positions), np.array([0, 1]), np.array([JOINT, END + 1j])
     )
@@ -63,7 +68,7 @@ def test_a_armature_costs_nothing_after_a_rigid_motion():
 
 def test_a_armature_has_no_resultant_and_no_moment():
     jet = objective().evaluate(*bent_map())
-    force = ARMATURE.gradient(jet.shaft_positions, None)
+    force = posed(ARMATURE, jet.shaft_positions).gradient
     assert np.abs(force).max() > 1.0
     assert abs(force.sum()) < 1e-9 * np.abs(force).sum()
     assert abs(np.vdot(force, 1j * jet.shaft_positions).real) < 1e-9 * np.abs(force).sum()
@@ -97,8 +102,8 @@ def test_the_hessian_of_shafts_is_exact_where_it_is_positive():
     positions = 1.3 * np.exp(0.2j) * shafts.shafts.points + 0.05j * shafts.shafts.points**2
     rng = np.random.default_rng(6)
     changes = rng.normal(size=len(positions)) + 1j * rng.normal(size=len(positions))
-    ahead, behind = (shafts.gradient(positions + by * changes, None) for by in (1e-6, -1e-6))
-    product = shafts.hessian_product(positions, None, changes)
+    ahead, behind = (posed(shafts, positions + by * changes).gradient for by in (1e-6, -1e-6))
+    product = posed(shafts, positions).hessian_product(changes)
     assert_allclose((ahead - behind) / 2e-6, product, rtol=1e-5, atol=1e-4)
 
 
