@@ -71,6 +71,12 @@ def _end_pending_change(session: Session, project: Project, change: PendingChang
     return session.project is project
 
 
+def cancel_pending_change(session: Session, project: Project, kind: JobKind) -> None:
+    """Cancel the pending changes of a kind."""
+    session.jobs.drop(kind)
+    project.pending.drop(kind.label)
+
+
 def is_document_idle(project: Project, *, after_saves: bool = False) -> bool:
     """Return whether no change of the document is pending.
 

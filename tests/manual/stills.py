@@ -169,7 +169,7 @@ def _ready_motions(window: Film, path: Path) -> None:
     window.open(sample_images() / "giraffe.png")
     window.resize((1000, 804))
     window.act(preset_setup.begin_motion_setup)
-    window.frames(6)
+    come_to_rest(window)
     window.act(viewing.zoom_to_pose)
     _still(window, path)
 

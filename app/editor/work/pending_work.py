@@ -24,13 +24,9 @@ class PendingWork(Revised):
     def remove(self, change: PendingChange) -> None:
         self.changes.remove(change)
 
-    def drop_key_resolvers(self) -> None:
-        """Cancel keys that are solved again."""
-        self.changes = [change for change in self.changes if not change.key_resolver]
-
-    def drop_motion_jobs(self) -> None:
-        """Cancel the pending motion of a layer."""
-        self.changes = [change for change in self.changes if not change.motion_job]
+    def drop(self, label: str) -> None:
+        """Drop the changes with a label: their results are not taken."""
+        self.changes = [change for change in self.changes if change.label != label]
 
     def defer(self, action: DeferredAction) -> None:
         self.deferred.append(action)

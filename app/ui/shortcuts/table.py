@@ -111,7 +111,7 @@ MENUS: dict[str, tuple[tuple[ActionSpec, ...], ...]] = {
         (sounds.ask_sound_to_add, footage.ask_footage_to_add, footage.ask_reference_to_add),
         (footage.collect_footage,),
         (joint_placement.mirror_joints, joint_placement.reset_joints),
-        (apply_motion.cancel_motion_job,),
+        (apply_motion.cancel_motion_job, rigging.cancel_rigging),
     ),
     N_("Help"): (
         (window_actions.open_manual_page, dialog_actions.show_shortcuts),
@@ -136,6 +136,7 @@ ENDED_BY_ESC = (
     editing.cancel_change,
     move_tool.return_to_posing,
     apply_motion.cancel_motion_job,
+    rigging.cancel_rigging,
     exporting.cancel_preparing,
     recording.discard_recording,
     tutorials.end_tutorial,

@@ -55,6 +55,7 @@ DISABLED = {  # while two handles of a bar with two keys are selected
     *(
         "Detect joints",
         "Cancel motion preset",
+        "Cancel rigging",
         "Look through the camera",
         "Discard recording",
         "Play all frames",

@@ -37,6 +37,7 @@ def hint_at(window):
 
 def draft_with_a_joint_moved(window, project):
     preset_setup.begin_motion_setup(window.session)
+    window.settle()
     draft = window.session.tools.motion_setup
     name, *_ = draft.joints
     place = complex(*project.document.canvas) / 2

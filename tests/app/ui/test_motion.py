@@ -21,6 +21,7 @@ from app.editor.actions.posing.motion_presets import (
 )
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.project_files import saving
+from app.editor.tools import move_tool
 from app.storage.project_file import load_project
 from app.ui.panel import is_in_front
 
@@ -33,13 +34,18 @@ def open_child(window):
 def breathing(window):
     """Let a ghost breathe: the simplest of motions."""
     project = window.open(paint(window.folder, "ghost"))
-    preset_setup.begin_motion_setup(window.session)
+    draft_motion(window)
     preset_setup.set_motion_parameters(window.session, speed=3.0)
     apply_motion.apply_motion_preset(window.session)
     arrive(window, project)
     playback.stop_playback(window.session)
     window.frames(2)
     return project
+
+
+def draft_motion(window):
+    preset_setup.begin_motion_setup(window.session)
+    window.settle()
 
 
 def arrive(window, project):
@@ -51,8 +57,7 @@ def arrive(window, project):
 def child(window):
     """Open a child in a picture, and draft a motion for it."""
     project = window.again(open_child)
-    preset_setup.begin_motion_setup(window.session)
-    window.frames(4)
+    draft_motion(window)
     return project
 
 
@@ -92,7 +97,7 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     window.show_tab("Handle")
     entry = "//##MainMenuBar/Animate/Apply motion preset…"
     window.run(lambda robot: robot.menu_click(entry))
-    window.frames(4)
+    window.settle()
     assert is_in_front("Animate")
     assert (window.session.tools.motion_setup.kind, window.session.tools.motion_setup.motion) == (
         "biped-side",
@@ -167,8 +172,10 @@ def test_missing_needs_of_a_motion_are_named(window, child):
     joint_placement.include_joint(window.session, "foot.R")
     assert not preset_setup.apply_motion_disabled_reason(window.session, child)
     preset_setup.set_body_kind(window.session, "anything")
+    window.settle()
     assert window.session.tools.motion_setup.motion in {"breathe", "sway", "hop"}
     preset_setup.set_body_kind(window.session, "biped-front")
+    window.settle()
     assert "foot.R" in window.session.tools.motion_setup.joints, "as they were left"
 
 
@@ -176,7 +183,7 @@ def test_handles_that_are_there_are_joints(window):
     project = window.open(paint(window.folder, "child"))
     suggest_handles(window.session)
     head = next(each for each in project.layer.handles if each.name == "head")
-    preset_setup.begin_motion_setup(window.session)
+    draft_motion(window)
     assert window.session.tools.motion_setup.joints["head"] == head.position
 
 
@@ -185,7 +192,7 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
 ):
     before = ghost.document
     (given,) = ghost.layer.motions
-    preset_setup.begin_motion_setup(window.session)
+    draft_motion(window)
     assert window.session.tools.motion_setup.applied_motion is given
     preset_setup.set_motion_parameters(window.session, speed=4.0)
     apply_motion.apply_motion_preset(window.session)
@@ -204,14 +211,14 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
 
 def test_given_again_its_handles_go_where_joints_were_dragged(window):
     project = window.open(paint(window.folder, "snake"))
-    preset_setup.begin_motion_setup(window.session)
+    draft_motion(window)
     preset_setup.set_motion_parameters(window.session, size=0.2, speed=4.0)
     apply_motion.apply_motion_preset(window.session)
     arrive(window, project)
     playback.stop_playback(window.session)
     handles = {handle.name: handle.id for handle in project.layer.handles}
     playback.scrub(window.session, 0)
-    preset_setup.begin_motion_setup(window.session)
+    draft_motion(window)
     place = window.session.tools.motion_setup.joints["joint.2"] + 6
     joint_placement.move_joint(window.session, "joint.2", place)
     apply_motion.apply_motion_preset(window.session)
@@ -237,7 +244,7 @@ def test_what_was_edited_by_hand_stays_unless_another_preset_replaces_it(window,
     assert find_motion_edits(ghost.layer, given).shifts[2][identity].imag > 2
     playback.stop_playback(window.session)
     playback.scrub(window.session, 0)
-    preset_setup.begin_motion_setup(window.session)
+    draft_motion(window)
     assert not preset_setup.apply_motion_disabled_reason(window.session, ghost)
     preset_setup.set_motion_preset(window.session, "sway")
     window.frames(3)
@@ -260,9 +267,40 @@ def test_rig_this_makes_handles_and_bones_in_one_step(window):
     bones = {tuple(names[end] for end in bone.ends) for bone in layer.bones}
     assert {("hip.L", "knee.L"), ("knee.L", "foot.L"), ("elbow.R", "hand.R")} <= bones
     rigging.rig_layer(window.session)
+    window.settle()
     assert window.session.notices.toasts[-1].text == "child has this rig already."
     editing.undo(window.session)
     assert project.document is before
+
+
+@pytest.mark.parametrize("how", ["escape", "change"])
+def test_rigging_ends_without_a_rig_by_escape_or_a_change_of_the_drawing(window, how):
+    project = window.open(paint(window.folder, "child"))
+    with window.session.jobs.held(rigging.RIGGING):
+        rigging.rig_layer(window.session)
+        window.frames(3)
+        if how == "escape":
+            window.run(lambda robot: robot.key_press(int(window.Key.escape)))
+            assert rigging.RIGGING not in window.session.jobs.kinds
+        else:
+            suggest_handles(window.session)
+        left = project.document
+    window.settle()
+    assert project.document is left
+    told = [toast.text for toast in window.session.notices.toasts]
+    assert any("Press “Rig this” again." in text for text in told) == (how == "change")
+
+
+def test_a_draft_opens_in_no_other_tool(window):
+    project = window.open(paint(window.folder, "child"))
+    with window.session.jobs.held(preset_setup.FINDING):
+        preset_setup.begin_motion_setup(window.session)
+        window.frames(2)
+        assert window.session.tools.mode == "pose"
+        move_tool.toggle_move_tool(window.session)
+    window.settle()
+    assert window.session.tools.mode == "move"
+    assert not project.pending.changes
 
 
 @pytest.mark.parametrize("how", ["rig", "apply"])
@@ -272,9 +310,10 @@ def test_legs_that_touch_are_parted_in_the_same_step(window, tmp_path, how):
     before = project.document
     if how == "rig":
         rigging.rig_layer(window.session)
+        window.settle()
         window.until(lambda: not project.layer.is_stale)
     else:
-        preset_setup.begin_motion_setup(window.session)
+        draft_motion(window)
         preset_setup.set_motion_parameters(window.session, size=0.3, speed=4.0)
         apply_motion.apply_motion_preset(window.session)
     arrive(window, project)
@@ -303,6 +342,7 @@ def test_legs_that_touch_are_parted_in_the_same_step(window, tmp_path, how):
 def test_another_motion_follows(window, ghost):
     (given,) = ghost.layer.motions
     preset_setup.append_motion(window.session, given)
+    window.settle()
     preset_setup.set_motion_parameters(window.session, size=0.3, speed=4.0)
     apply_motion.apply_motion_preset(window.session)
     arrive(window, ghost)
@@ -319,7 +359,7 @@ def test_each_solved_pose_is_shown_until_escape_cancels_the_preset(window, tmp_p
         draw_person("lines").save(tmp_path / "person.png")
     project = window.open(tmp_path / "person.png" if parts else paint(window.folder, "child"))
     before, at_rest = project.document, project.runtimes.displayed
-    preset_setup.begin_motion_setup(window.session)
+    draft_motion(window)
     preset_setup.set_motion_parameters(window.session, size=0.3, speed=4.0)
     apply_motion.apply_motion_preset(window.session)
     window.until(lambda: project.motion_job.solve is not None and project.motion_job.solve.poses)
@@ -360,7 +400,7 @@ def test_on_its_way_it_is_given_up_and_drafted_again(window, child, how):
 
 
 def test_a_change_meanwhile_refuses_it(window, ghost):
-    preset_setup.begin_motion_setup(window.session)
+    draft_motion(window)
     apply_motion.apply_motion_preset(window.session)
     remove_handles(window.session, frozenset({ghost.layer.handles[0].id}))
     changed = ghost.document
@@ -372,7 +412,7 @@ def test_a_change_meanwhile_refuses_it(window, ghost):
 def test_near_leg_is_asked_for_beside_a_picture_of_each_leg(window, tmp_path):
     window.program.take_dropped([paint(tmp_path, "walker", size=160)])
     window.settle()
-    preset_setup.begin_motion_setup(window.session)
+    draft_motion(window)
     setup = window.session.tools.motion_setup
     window.session.tools.select(replace(setup, unsure=("foot.R",)))
     window.frames(3)

@@ -134,10 +134,9 @@ def _follows_cut_out(resolver: KeyResolver) -> bool:
 @with_project
 def cancel_solving_keys(session: Session, project: Project) -> None:
     """Cancel the current solve or rebuild."""
-    session.jobs.drop(SOLVING_KEYS)
     if project.key_resolver is not None and _follows_cut_out(project.key_resolver):
         project.layer_setup.refuse(project.key_resolver.before)
-    project.pending.drop_key_resolvers()
+    pending_changes.cancel_pending_change(session, project, SOLVING_KEYS)
 
 
 @with_project

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from app.editor import Action, Hint, Project, Session
 from app.editor.actions import tutorials, viewing
 from app.editor.actions.action_spec import ActionSpec
-from app.editor.actions.posing.motion_presets import apply_motion
+from app.editor.actions.posing.motion_presets import apply_motion, rigging
 from app.editor.actions.timing import keys
 from app.editor.tools import move_tool
 from app.editor.tools.table import tools_of
@@ -78,16 +78,25 @@ def draw_badges(
         end = shown_keys(move_tool.return_to_posing)
         text = _("{mode}: {keys} goes back to posing").format(mode=mode, keys=end)
         return _draw_pill(look, text, top, room.x)
-    if project.motion_job is not None:
-        text = _("{step} · {keys} cancels").format(
-            step=project.motion_job.step_label, keys=shown_keys(apply_motion.cancel_motion_job)
-        )
+    cancellable = _cancellable_job(session, project)
+    if cancellable is not None:
+        step, cancel = cancellable
+        text = _("{step} · {keys} cancels").format(step=step, keys=shown_keys(cancel))
         return _draw_pill(look, text, top, room.x)
     step = find_first_step(project)
     if step is None or tutorials.is_tutorial_shown(session):
         return []
     # Messages are below, and so are feet.
     return _draw_pill(look, HINTS[step], corner + ImVec2(room.x / 2, 0.5 * look.em), room.x)
+
+
+def _cancellable_job(session: Session, project: Project) -> tuple[str, ActionSpec] | None:
+    """Return the step of a job for which the person waits, and the action that cancels it."""
+    if project.motion_job is not None:
+        return project.motion_job.step_label, apply_motion.cancel_motion_job
+    if rigging.RIGGING in session.jobs.kinds:
+        return rigging.RIGGING.label, rigging.cancel_rigging
+    return None
 
 
 def find_first_step(project: Project) -> int | None:

@@ -11,6 +11,7 @@ from app.editor.action import do
 from app.editor.actions import playback
 from app.editor.actions.action_spec import named_action, unless
 from app.editor.actions.posing.motion_presets import preset_setup
+from app.editor.actions.posing.motion_presets.new_setup import setup_of_applied_motion
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -207,7 +208,7 @@ def change_applied_motion(
     if found is None or given is None:
         session.notices.show(_("This motion was deleted."))
         return
-    draft = preset_setup.setup_of_applied_motion(project, found, given)
+    draft = setup_of_applied_motion(found, given)
     parameters = replace(draft.parameters, **values)
     pending_changes.run_when_idle(
         session, do(_begin, replace(draft, parameters=parameters)), _("Apply motion preset")
@@ -226,7 +227,6 @@ def cancel_motion_job(session: Session, project: Project) -> None:
     """Cancel the pending motion; its draft opens again."""
     task = project.motion_job
     if task is not None:
-        session.jobs.drop(GIVING)
-        project.pending.drop_motion_jobs()
+        pending_changes.cancel_pending_change(session, project, GIVING)
         if task.before.id == project.selection.active:
             _reopen(session, project, task.setup)

@@ -5,17 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import Layer
 from app.editor.actions.action_spec import named_action, unless
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.motion_setup import MotionSetup
-from app.rigging import find_kind, other_side, swap_limbs
-from app.solving import JointGuess, guess_joints
+from app.rigging import other_side, swap_limbs
 from app.texts import _
-from engine.geometry import diameter
 
-NEAR = 0.035  # of the diameter: a handle within this distance of a joint is the joint
 # Offset of a joint that was not found from its parent joint, in heights of the body.
 BELOW = 0.12
 BESIDE: Mapping[str, complex] = {
@@ -30,24 +26,6 @@ BESIDE: Mapping[str, complex] = {
     "knee": 0.3 - 1j,
     "foot": -1j,
 }
-
-
-def find_joints(project: Project, layer: Layer, kind: str) -> JointGuess:
-    """Return a body kind's joints in a layer: at its handles, or by the handles' names."""
-    body = find_kind(kind)
-    guess = guess_joints(layer, kind, project.runtimes.layers[layer.id].picture.rgba)
-    joints = dict(guess.joints)
-    near = NEAR * diameter(layer.domain.outline)
-    named = {h.name: h.position for h in layer.handles if h.name in body.parents}
-    free = [h.position for h in layer.handles if h.name not in named]
-    for name, place in joints.items():
-        nearest = min(free, key=lambda at: abs(at - place), default=None)
-        if name not in named and nearest is not None and abs(nearest - place) <= near:
-            joints[name] = nearest
-            free.remove(nearest)
-    joints |= named
-    unsure = tuple(name for name in guess.unsure if name not in named)
-    return JointGuess({name: joints[name] for name in body.parents if name in joints}, unsure)
 
 
 def swap_near_limbs(session: Session, end: str) -> None:

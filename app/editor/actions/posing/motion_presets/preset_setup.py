@@ -1,23 +1,34 @@
 """The draft of a motion preset: motion, body kind and parameters."""
 
-from collections.abc import Collection
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 
-from app.document import AppliedMotion, Layer, is_motion_unedited
+from app.document import AppliedMotion, is_motion_unedited
+from app.editor import pending_changes
 from app.editor.actions import playback
 from app.editor.actions.action_spec import named_action
-from app.editor.actions.posing.motion_presets.joint_placement import find_joints
+from app.editor.actions.posing.motion_presets.new_setup import (
+    find_first_motion,
+    find_joints,
+    new_motion_setup,
+    setup_of_applied_motion,
+)
 from app.editor.project import Project
 from app.editor.session import Session, with_project
+from app.editor.work.jobs import JobKind
 from app.editor.work.motion_setup import MotionSetup
-from app.rigging import MOTIONS, Parameters
-from app.solving import guess_layer_kind
+from app.editor.work.pending_change import PendingChange
+from app.rigging import MOTIONS
+from app.solving import JointGuess
 from app.texts import _, ngettext
+
+Found = TypeVar("Found")
 
 MOST_ROUNDS = 50
 PANEL = "Animate"
-LINKS = 6
+FINDING = JobKind(_("Finding the joints"), _("The joints were not found"), "hand")
 
 
 def motion_disabled_reason(_session: Session, project: Project) -> str | None:
@@ -55,20 +66,58 @@ def begin_motion_setup(session: Session, project: Project) -> None:
         return
     playback.stop_playback(session)
     project.selection.deselect_handles(project.selection.handles)
-    frame = playback.current_frame(session, project)
-    here = [each for each in project.layer.motions if each.first <= frame < each.last]
+    layer, rgba = project.layer, project.layer_runtime.picture.rgba
+    frame, kept = playback.current_frame(session, project), kept_motion_setup(session, project)
+    here = [each for each in layer.motions if each.first <= frame < each.last]
     if here:
-        draft = setup_of_applied_motion(project, project.layer, here[-1])
+        show_motion_setup(session, setup_of_applied_motion(layer, here[-1]))
+        search = partial(find_joints, layer, rgba, here[-1].kind)
+        _find(session, project, search, partial(_suggest_joints, session))
+    elif kept is not None:
+        show_motion_setup(session, replace(kept, first=frame, past=(), selected_joint=None))
     else:
-        kept = kept_motion_setup(session, project)
-        draft = (
-            new_motion_setup(project, project.layer, frame)
-            if kept is None
-            else replace(kept, first=frame, past=(), selected_joint=None)
-        )
+        session.tools.select("pose")
+        work = partial(new_motion_setup, layer, rgba, frame)
+        _find(session, project, work, partial(_show_found_setup, session))
+
+
+def show_motion_setup(session: Session, draft: MotionSetup) -> None:
+    """Show a draft in its panel."""
+    session.display.focus_panel(PANEL)
     session.tools.select(draft)
     # Motion setup has its own hints.
     session.tutorial.end()
+
+
+def _show_found_setup(session: Session, draft: MotionSetup) -> None:
+    """Show a new draft, unless another tool is selected meanwhile."""
+    if session.tools.mode == "pose":
+        show_motion_setup(session, draft)
+
+
+def _find(
+    session: Session,
+    project: Project,
+    work: Callable[[], Found],
+    done: Callable[[Found], None],
+) -> None:
+    """Find joints of the active layer on the worker; an earlier search is dropped."""
+    layer = project.layer
+    pending_changes.cancel_pending_change(session, project, FINDING)
+
+    def found(result: Found) -> None:
+        if project.layer.id == layer.id and project.layer.domain is layer.domain:
+            done(result)
+
+    change = PendingChange(label=FINDING.label, changes=False)
+    pending_changes.begin_pending_change(session, project, FINDING, work, found, change=change)
+
+
+def _suggest_joints(session: Session, guess: JointGuess) -> None:
+    """Take the joints that are found for an applied motion as suggestions."""
+    draft = session.tools.motion_setup
+    if draft is not None:
+        session.tools.select(replace(draft, suggested=guess.joints))
 
 
 @with_project
@@ -99,70 +148,18 @@ def kept_motion_setup(session: Session, project: Project) -> MotionSetup | None:
     return draft if (draft.layer, draft.domain) == (layer.id, layer.domain) else None
 
 
-def new_motion_setup(project: Project, layer: Layer, frame: int) -> MotionSetup:
-    """Return a draft for a layer without a motion at a frame: like the last motion, or a guess.
-
-    The joints of the last motion are reused.
-    """
-    earlier = [each for each in layer.motions if each.first <= frame]
-    if earlier:
-        draft = setup_of_applied_motion(project, layer, earlier[-1])
-        return replace(draft, applied_motion=None, first=frame, parameters=Parameters(), rounds=1)
-    kind = guess_layer_kind(layer, project.runtimes.layers[layer.id].picture.rgba)
-    guess = find_joints(project, layer, kind.name)
-    return MotionSetup(
-        layer=layer.id,
-        domain=layer.domain,
-        kind=kind.name,
-        motion=_first_motion(kind.name, guess.joints),
-        joints=guess.joints,
-        suggested=guess.joints,
-        unsure=guess.unsure,
-        first=frame,
-    )
-
-
-def setup_of_applied_motion(project: Project, layer: Layer, given: AppliedMotion) -> MotionSetup:
-    """Return the draft that gives an applied motion."""
-    there = {handle.id: handle.position for handle in layer.handles}
-    names = given.joints.items()
-    joints = {name: there[handle] for name, handle in names if handle in there}
-    return MotionSetup(
-        layer=layer.id,
-        domain=layer.domain,
-        kind=given.kind,
-        motion=given.motion,
-        joints=joints if given.kind != "anything" else {},
-        suggested=find_joints(project, layer, given.kind).joints,
-        parameters=given.parameters,
-        rounds=given.repeat_count,
-        facing=given.facing,
-        first=given.first,
-        applied_motion=given,
-    )
-
-
-def _first_motion(kind: str, joints: Collection[str]) -> str:
-    """Return the first motion that fits a body kind and its joints; travelling ones first.
-
-    A chain of few links, such as a fish, gets a tail wag instead of a wave.
-    """
-    if kind == "chain" and len(joints) < LINKS:
-        return "wag"
-    fitting = [name for name, motion in MOTIONS.items() if kind in motion.templates]
-    possible = [name for name in fitting if {*MOTIONS[name].template_for(kind).needed} <= {*joints}]
-    getting_on = [name for name in possible if MOTIONS[name].template_for(kind).can_travel]
-    return (getting_on or possible or fitting)[0]
-
-
 @with_project
 def set_body_kind(session: Session, project: Project, kind: str) -> None:
-    """Set the body kind; its joints are its earlier or suggested ones."""
+    """Set the body kind; its joints are its earlier ones, or are found on the worker."""
+    work = partial(find_joints, project.layer, project.layer_runtime.picture.rgba, kind)
+    _find(session, project, work, partial(_take_body_kind, session, kind))
+
+
+def _take_body_kind(session: Session, kind: str, guess: JointGuess) -> None:
     draft = session.tools.motion_setup
     if draft is None or kind == draft.kind:
         return
     others = {**draft.others, draft.kind: draft.joints}
-    guess = find_joints(project, project.layer, kind)
     joints = others.get(kind, guess.joints)
     fits = kind in MOTIONS[draft.motion].templates
     session.tools.select(
@@ -173,7 +170,7 @@ def set_body_kind(session: Session, project: Project, kind: str) -> None:
             suggested=guess.joints,
             unsure=guess.unsure,
             others=others,
-            motion=draft.motion if fits else _first_motion(kind, joints),
+            motion=draft.motion if fits else find_first_motion(kind, joints),
             facing=None,
             selected_joint=None,
             past=(),
