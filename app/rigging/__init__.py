@@ -13,7 +13,7 @@ from app.rigging.anatomy.lines.arm_lines import (
     find_arm_line as find_arm_line,
     with_shoulders as with_shoulders,
 )
-from app.rigging.anatomy.lines.leg_tracks import TrackedLeg as TrackedLeg, track_legs as track_legs
+from app.rigging.anatomy.lines.leg_tracks import track_legs as track_legs
 from app.rigging.anatomy.lines.limb_lines import (
     LimbLine as LimbLine,
     find_limb_line as find_limb_line,
@@ -24,10 +24,7 @@ from app.rigging.anatomy.lines.near_limbs import (
     name_near_limbs as name_near_limbs,
     swap_limbs as swap_limbs,
 )
-from app.rigging.anatomy.lines.tracked_joints import (
-    find_kind_by_legs as find_kind_by_legs,
-    with_tracked_legs as with_tracked_legs,
-)
+from app.rigging.anatomy.lines.tracked_joints import with_tracked_legs as with_tracked_legs
 from app.rigging.kinematics.chains import bend_side as bend_side, solve_chain as solve_chain
 from app.rigging.kinematics.recordings import FittedKeys as FittedKeys, fit_keys as fit_keys
 from app.rigging.kinematics.springs import (

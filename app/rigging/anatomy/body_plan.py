@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from app.rigging.anatomy.anatomy import Anatomy, neck_along
-from app.rigging.anatomy.legs import PlannedLeg, plan_leg
+from app.rigging.anatomy.legs import PlannedLeg, TrackedLeg, pair_legs, plan_leg
 from engine.arrays import Complexes, Floats, Indices
 from engine.geometry import contains
 
@@ -32,10 +32,11 @@ END = 0.35  # of the trunk between the legs: a head or a tail leaves it within t
 class BodyPlan:
     """The legs of a shape, and the ends of its trunk.
 
-    `loops` are the outline, counter-clockwise, and the outlines of the holes; y up.
+    `loops` are the outline, counter-clockwise, and the outlines of the holes; y up. `tracked` are
+    legs, from the left, that lines part: two pairs of them count if the shape itself shows no legs.
     """
 
-    def __init__(self, loops: Sequence[Complexes]) -> None:
+    def __init__(self, loops: Sequence[Complexes], tracked: Sequence[TrackedLeg] = ()) -> None:
         self.loops = loops
         self.anatomy = Anatomy(loops, opened=True)
         self.places, self.radii = self.anatomy.places, self.anatomy.radii
@@ -43,9 +44,13 @@ class BodyPlan:
         self.low = complex(outline.real.min(), outline.imag.min())
         self.high = complex(outline.real.max(), outline.imag.max())
         self.tall, self.wide = (self.high - self.low).imag, (self.high - self.low).real
-        self.legs = self._legs()
+        self.legs, ends = self._legs(), list(self.anatomy.branches)
+        if len(self.legs) < 2 and pair_legs(tracked):
+            self.legs = self._legs_between_lines(tracked)
+            lowest = min(leg.root.imag for leg in tracked)
+            ends = [end for end in ends if self.places[end].imag > lowest]
         standing = {int(leg.path[-1]) for leg in self.legs}
-        self.others = [end for end in self.anatomy.branches if end not in standing]
+        self.others = [end for end in ends if end not in standing]
 
     def between(self, start: int, end: int) -> Indices:
         _, before = self.anatomy.skeleton.path_distances([start])
@@ -88,6 +93,18 @@ class BodyPlan:
                 and abs(self.places[leg.path[0]] - self.places[hips]) <= reach
             ][:1]
         return self._without_tail(sorted(legs, key=lambda leg: float(self.places[leg.ankle].real)))
+
+    def _legs_between_lines(self, tracked: Sequence[TrackedLeg]) -> list[PlannedLeg]:
+        """Return the paths along which lines part legs, from one root for each pair."""
+        nodes, legs = self.anatomy.kept, list[PlannedLeg]()
+        for pair in pair_legs(tracked):
+            roots, feet = (np.array([leg[at] for leg in pair]) for at in (0, -1))
+            root, *ends = (
+                int(nodes[np.abs(self.places[nodes] - place).argmin()])
+                for place in (roots.mean(), *feet)
+            )
+            legs += [PlannedLeg(self.between(root, end), end) for end in ends]
+        return legs
 
     def _without_tail(self, legs: list[PlannedLeg]) -> list[PlannedLeg]:
         """Return legs without a tail that lies on the ground like a second foot."""

@@ -15,7 +15,7 @@ from app.rigging.anatomy.chain import (
     name_tail_joints,
     suggest_chain_joints,
 )
-from app.rigging.anatomy.legs import PlannedLeg
+from app.rigging.anatomy.legs import PlannedLeg, TrackedLeg
 from app.rigging.motions.kinds import BodyKind
 from engine.arrays import Complexes
 from engine.geometry import contains
@@ -36,7 +36,11 @@ CROTCH = 1.3  # radii of a leg from the crotch up to the hips
 
 
 def suggest_joints(
-    loops: Sequence[Complexes], kind: BodyKind, *, has_arm_lines: bool = False
+    loops: Sequence[Complexes],
+    kind: BodyKind,
+    legs: Sequence[TrackedLeg] = (),
+    *,
+    has_arm_lines: bool = False,
 ) -> Mapping[str, complex]:
     """Suggest the joints of a kind of body in a shape.
 
@@ -44,6 +48,8 @@ def suggest_joints(
     ----------
     loops : sequence of complex128
         The outline, counter-clockwise, and the outlines of the holes; y up.
+    legs : sequence of TrackedLeg
+        Legs, from the left, that lines in the picture part.
     has_arm_lines : bool
         Whether lines in the picture part lowered arms from the trunk, so that they turn in their
         shoulders; else arms turn at the armpits.
@@ -55,7 +61,7 @@ def suggest_joints(
         not found. From the front `.L` is the side on the right of the picture. From the side it
         means the legs ahead, or of four legs the outer ones.
     """
-    plan = BodyPlan(loops)
+    plan = BodyPlan(loops, legs)
     if not kind.parents:
         return {}
     if "joint.1" in kind.parents:

@@ -4,20 +4,24 @@ from collections.abc import Sequence
 
 from app.rigging.anatomy.body_plan import FOOT, SYMMETRIC, TOES, BodyPlan
 from app.rigging.anatomy.chain import is_chain
+from app.rigging.anatomy.legs import TrackedLeg, are_beside
 from app.rigging.motions.kinds import BodyKind, find_kind
 from engine.arrays import Complexes
 
 MOST_LEGS, MOST_LIMBS = 4, 9
 
 
-def guess_kind(loops: Sequence[Complexes]) -> BodyKind:
-    """Return the kind of body that a shape looks like.
+def guess_kind(loops: Sequence[Complexes], legs: Sequence[TrackedLeg] = ()) -> BodyKind:
+    """Return the kind of body that a drawing looks like.
 
-    `loops` are the outline, counter-clockwise, and the outlines of the holes; y up. The drawing is
-    judged as it stands: legs are on the ground, a chain lies along one path; other shapes are
-    without joints.
+    `loops` are the outline, counter-clockwise, and the outlines of the holes; y up. `legs` are
+    those that lines part. The drawing is judged as it stands: legs are on the ground, a chain lies
+    along one path; other shapes are without joints.
     """
-    return _kind(BodyPlan(loops))
+    kind = _kind(BodyPlan(loops, legs))
+    # By its silhouette, a body on two legs beside each other is long, or like anything.
+    is_parted = kind.name in ("chain", "anything") and len(legs) == 2 and are_beside(*legs)
+    return find_kind("biped-side") if is_parted else kind
 
 
 def _kind(plan: BodyPlan) -> BodyKind:

@@ -1,5 +1,6 @@
-"""The legs among the branches of a skeleton."""
+"""Legs of a drawing: branches of its skeleton, or what lines part from each other."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,15 @@ SHORT, CORNER = 1.0, 0.5
 LYING = 1.3
 # Heights of ankle and sole above the lowest place of a leg's middle line, in its radii.
 ANKLE, SOLE = 1.1, 0.6
+BESIDE = 0.6  # of a leg's length: the feet of a pair of legs are this near
+
+
+class TrackedLeg(NamedTuple):
+    """Joints of a leg between lines: where it leaves the body, its knee or hock, and its ankle."""
+
+    root: complex
+    knee: complex
+    foot: complex
 
 
 class PlannedLeg(NamedTuple):
@@ -45,3 +55,18 @@ def plan_leg(branch: Branch, places: Complexes, radii: Floats) -> tuple[PlannedL
     is_corner = out <= SHORT * radii[-1] and thin < CORNER * thick
     is_leg = not is_corner and abs(down.real) <= LYING * down.imag
     return (PlannedLeg(path[::-1], int(path[ankle])) if is_leg else None), lowest
+
+
+def pair_legs(legs: Sequence[TrackedLeg]) -> list[Sequence[TrackedLeg]]:
+    """Return three or four legs, from the left, as two pairs; nothing if they are not."""
+    if len(legs) not in (3, 4):
+        return []
+    parted = int(np.diff([leg.foot.real for leg in legs]).argmax()) + 1
+    pairs = [legs[:parted], legs[parted:]]
+    return [] if max(map(len, pairs)) > 2 else pairs
+
+
+def are_beside(one: TrackedLeg, other: TrackedLeg) -> bool:
+    """Whether two feet are so near to each other that one body stands on them alone."""
+    long = min(abs(leg.root - leg.foot) for leg in (one, other))
+    return abs(one.foot - other.foot) < BESIDE * long

@@ -12,7 +12,6 @@ from app.rigging import (
     NearLimb,
     bend_straight_legs,
     find_kind,
-    find_kind_by_legs,
     guess_facing,
     guess_kind,
     guess_near_limbs,
@@ -42,20 +41,17 @@ class JointGuess(NamedTuple):
 def guess_layer_kind(layer: Layer, rgba: Bytes | None) -> BodyKind:
     """Return the kind of body that a layer looks like."""
     loops = layer.domain.loops
-    kind = guess_kind(loops)
-    if rgba is None:
-        return kind
-    return find_kind_by_legs(kind, track_legs(loops, rgba, layer.corner))
+    return guess_kind(loops, () if rgba is None else track_legs(loops, rgba, layer.corner))
 
 
 def guess_joints(layer: Layer, kind: str, rgba: Bytes | None) -> JointGuess:
     """Return the joints of a kind of body in a layer: by the outline, and lines in the picture."""
     body, loops = find_kind(kind), layer.domain.loops
-    joints = suggest_joints(loops, body)
-    if rgba is None or "foot.L" not in body.parents or not joints:
-        return JointGuess(joints)
-    joints = with_shoulders(joints, body, loops, rgba, layer.corner)
+    if rgba is None or "foot.L" not in body.parents:
+        return JointGuess(suggest_joints(loops, body))
     legs = track_legs(loops, rgba, layer.corner)
+    joints = suggest_joints(loops, body, legs)
+    joints = with_shoulders(joints, body, loops, rgba, layer.corner)
     facing = guess_facing(body, joints, loops[0])
     tracked = with_tracked_legs(joints, body, legs, facing)
     places = layer.domain.nearest(_place_apart(layer, np.array([*tracked.values()]))).tolist()

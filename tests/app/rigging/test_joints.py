@@ -18,7 +18,7 @@ from app.rigging import (
     track_legs,
     with_tracked_legs,
 )
-from app.rigging.anatomy.lines.leg_tracks import TrackedLeg
+from app.rigging.anatomy.legs import TrackedLeg
 from app.rigging.anatomy.lines.near_limbs import NearLimb
 from engine.geometry import contains, signed_area
 
@@ -196,6 +196,24 @@ def test_a_line_parts_two_legs_of_one_silhouette():
     for leg in legs:
         assert leg.foot.imag < leg.knee.imag < leg.root.imag <= 180
     assert len(track_legs(*joined_legs(has_line=False))) < 2
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_pig_without_a_tail_stands_on_four_legs_that_lines_part(way):
+    def turned(*places):
+        return [way * at.real + 1j * at.imag for at in map(complex, places)]
+
+    body = [([-150 + 200j, 150 + 200j], 170), dot(270 + 230j, 70)]
+    joined = [([at + 150j, at + 20j], 90) for at in (-130, 130)]
+    loops = drawn(*((turned(*points), width) for points, width in body + joined))
+    legs = [
+        TrackedLeg(*turned(at + 130j, at + 70j, at + 30j)) for at in (-150, -110, 110, 150)[::way]
+    ]
+    assert guess_kind(loops).name == "chain", "by its silhouette"
+    assert guess_kind(loops, legs).name == "four-legs"
+    joints = suggest_joints(loops, find_kind("four-legs"), legs)
+    assert way * joints["head"].real > way * joints["chest"].real > 50
+    assert way * joints["hips"].real < -50
 
 
 def test_tracked_legs_replace_the_silhouettes_and_leave_a_raised_limb_as_an_arm():

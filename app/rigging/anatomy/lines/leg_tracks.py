@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
+from app.rigging.anatomy.legs import TrackedLeg
 from engine.arrays import Booleans, Bytes, Complexes, Floats
 from engine.geometry import distance_to_segments
 
@@ -36,14 +37,6 @@ FOOT = 1.35  # width of a foot's rows over that of the leg
 # From the ankle on a leg leads straight up: of its widths, how far it may lie beside that line.
 ASIDE = 0.5
 BENT = 0.03  # of a leg's length: its middle line is farther from a straight line if its knee bends
-
-
-class TrackedLeg(NamedTuple):
-    """Joints of a leg: where it leaves the body, its knee or hock, and its ankle."""
-
-    root: complex
-    knee: complex
-    foot: complex
 
 
 class _Track(NamedTuple):

@@ -4,25 +4,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.rigging.anatomy.lines.leg_tracks import TrackedLeg
-from app.rigging.motions.kinds import BodyKind, find_kind
+from app.rigging.anatomy.legs import TrackedLeg, pair_legs
+from app.rigging.motions.kinds import BodyKind
 
 LEG = ("hip", "knee", "foot")
 FRONT_LEG = ("shoulder", "elbow", "hand")
-BESIDE = 0.6  # of a leg's length: the feet of one body are this near
 PELVIS = 0.22  # of a leg's length: height of the hips above the roots of both legs
-
-
-def find_kind_by_legs(kind: BodyKind, legs: Sequence[TrackedLeg]) -> BodyKind:
-    """Return the kind of a body that stands on two legs beside each other, parted by lines only.
-
-    By its silhouette such a body looks like a chain, or like anything.
-    """
-    if kind.name not in ("chain", "anything") or len(legs) != 2:
-        return kind
-    one, other = legs
-    long = min(abs(leg.root - leg.foot) for leg in legs)
-    return find_kind("biped-side") if abs(one.foot - other.foot) < BESIDE * long else kind
 
 
 def with_tracked_legs(
@@ -33,12 +20,8 @@ def with_tracked_legs(
     `legs` are in order from the left. If their number does not fit the kind, the joints stay.
     """
     if kind.name == "four-legs":
-        if len(legs) not in (3, 4):
-            return dict(joints)
-        gaps = np.diff([leg.foot.real for leg in legs])
-        parted = int(gaps.argmax()) + 1
-        pairs = [legs[:parted], legs[parted:]]
-        if max(map(len, pairs)) > 2:
+        pairs = pair_legs(legs)
+        if not pairs:
             return dict(joints)
         hind, front = pairs if facing > 0 else pairs[::-1]
         return _placed(joints, {LEG: hind, FRONT_LEG: front}, facing)
