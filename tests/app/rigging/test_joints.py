@@ -229,6 +229,14 @@ def test_tracked_legs_replace_the_silhouettes_and_leave_a_raised_limb_as_an_arm(
     assert with_tracked_legs(joints, find_kind("four-legs"), legs, 1) == joints
 
 
+def test_a_tail_that_leans_on_the_ground_is_no_leg_though_lines_part_it():
+    joints = suggest_joints(drawn(*KANGAROO), find_kind("biped-side"))
+    tail = [at for name, at in joints.items() if name.startswith("tail")]
+    foot = (tail[0] + tail[-1]) / 2
+    legs = [TrackedLeg(tail[0] + 40j, tail[0], foot), TrackedLeg(200j, 100j, -40 + 30j)]
+    assert with_tracked_legs(joints, find_kind("biped-side"), legs, 1) == joints
+
+
 def test_a_long_thin_tail_has_a_chain_from_its_base_outside_the_body():
     horse = drawn(*HORSE, ([-150 + 210j, -300 + 150j, -420 + 170j], 24))
     joints = suggested(horse, "four-legs")

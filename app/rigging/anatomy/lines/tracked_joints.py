@@ -6,9 +6,13 @@ import numpy as np
 
 from app.rigging.anatomy.legs import TrackedLeg, pair_legs
 from app.rigging.motions.kinds import BodyKind
+from engine.geometry import distance_to_segments
 
 LEG = ("hip", "knee", "foot")
 FRONT_LEG = ("shoulder", "elbow", "hand")
+# A foot in a tail: the length of the tail over that of the leg, at least, and the foot's distance
+# from the tail's middle in lengths of it, at most.
+LONG_TAIL, IN_TAIL = 0.6, 0.1
 PELVIS = 0.22  # of a leg's length: height of the hips above the roots of both legs
 
 
@@ -25,6 +29,7 @@ def with_tracked_legs(
             return dict(joints)
         hind, front = pairs if facing > 0 else pairs[::-1]
         return _placed(joints, {LEG: hind, FRONT_LEG: front}, facing)
+    legs = [leg for leg in legs if not _is_tail(leg, joints)]
     if len(legs) != 2 or not kind.name.startswith("biped"):
         return dict(joints)
     found = _with_arms_apart(joints, legs)
@@ -35,6 +40,16 @@ def with_tracked_legs(
         long = float(np.mean([abs(leg.root - leg.foot) for leg in legs]))
         found["hips"] = sum(roots) / len(roots) + 1j * PELVIS * long
     return found
+
+
+def _is_tail(leg: TrackedLeg, joints: Mapping[str, complex]) -> bool:
+    """Whether what seems a leg is part of a tail that leans on the ground."""
+    tail = np.array([at for name, at in joints.items() if name.startswith("tail")])
+    long = float(np.abs(np.diff(tail)).sum())
+    if long < LONG_TAIL * abs(leg.root - leg.foot):
+        return False
+    away = distance_to_segments(np.array([leg.foot]), tail[:-1], tail[1:])
+    return float(away.min()) <= IN_TAIL * long
 
 
 def _is_in_foot(name: str, place: complex, legs: Sequence[TrackedLeg]) -> bool:
