@@ -26,6 +26,8 @@ PATH_STEPS = 10
 PATH_REST = 1e-3
 # Steps without progress after which a drag is handed over to the search for the minimum.
 PATIENCE = 4
+# Gradients of pulls that differ by at most this part are the same but for rounding.
+SAME_PULL = 1e-9
 UNSETTLED = (
     "The shape did not converge in {count} steps: it is {status}. Give more steps (at_most), "
     "wider limits or nearer targets, or accept the shape as it is (throw=False)."
@@ -154,13 +156,19 @@ class Deformer(ConstrainedShape):
     def release(self, state: State, left: HandleTargets) -> State:
         """Return the state after the drag ends and the handles have the targets `left`.
 
-        A minimum stays final if `left` comes from `HandleTargets.released`: the gradient is the
-        same. From any other state further steps continue the search.
+        A minimum stays final if `left` pulls as the present targets do: the gradient is the same,
+        as with targets from `HandleTargets.released`. From any other state further steps continue
+        the search.
         """
         targets, is_minimum = state.targets, state.status in (Status.CONVERGED, Status.AT_LIMITS)
         if is_minimum and targets is not None:
-            exact = targets.released(self.positions(state))
-            if exact.is_same(left):
+            before, after = (
+                objective.held_gradient(evaluation)
+                for objective, evaluation in (
+                    self.measure_state(state, each) for each in (targets, left)
+                )
+            )
+            if np.linalg.norm(after - before) <= SAME_PULL * np.linalg.norm(before):
                 return replace(state, targets=left)
         return replace(state, status=Status.MOVING, search=None, outcome=None, starting_points=())
 

@@ -141,7 +141,8 @@ def _least_changed(
         found = _follow(bends, spans, goal - root, low, high)
         places = np.cumsum(spans * np.exp(1j * np.cumsum(found)))
         if abs(places[-1] - (goal - root)) <= MISSED * spans.sum():
-            return [root + complex(place) for place in places]
+            # Exactly the goal: a pose at rest is at rest for its own end, too.
+            return [*(root + complex(place) for place in places[:-1]), goal]
     return None
 
 

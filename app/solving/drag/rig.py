@@ -238,7 +238,10 @@ class PosedRig:
         left = {}
         for identity in self.limbs.limbs.rigid_ends.intersection(pulled) - self.rig.free:
             way = targets[identity].position - now[identity]
-            left[identity] = now[identity] + way * min(1.0, most / (abs(way) or most))
+            is_reached = abs(way) <= most
+            left[identity] = (
+                targets[identity].position if is_reached else now[identity] + way * most / abs(way)
+            )
         return left
 
     def make_pose(

@@ -137,6 +137,11 @@ class Objective:
 
     def gradient(self, jet: Evaluation, radial: RadialDerivatives) -> Floats:
         """Return the gradient (u,)."""
+        gradient: Floats = self.held_gradient(jet)
+        return gradient + self.sampled_gradient(jet, radial.a, radial.b_per_b)
+
+    def held_gradient(self, jet: Evaluation) -> Floats:
+        """Return the gradient (u,) of the energy of handles and armature."""
         pull = 2.0 * self.handles.stiffness * self.targets.target_errors(jet.positions)
         by_phi = pull.conj() @ self.handles.basis_coordinates
         by_psi = pull @ self.handles.basis_coordinates
@@ -148,9 +153,7 @@ class Objective:
             # d arg F = Im(dF / F) = Re(−i dF / F).
             angle = 2.0 * self.rotation_stiffness * self.rotation_errors(jet)
             by_phi += (-1j * angle / jet.fz[self.rotation_constraints]) @ self.rotation_rows
-        by_handles = self.by_unknowns(by_phi, by_psi)
-        gradient: Floats = by_handles + self.sampled_gradient(jet, radial.a, radial.b_per_b)
-        return gradient
+        return self.by_unknowns(by_phi, by_psi)
 
     def target_error_change(self, jet: Evaluation, changes: Complexes) -> Complexes:
         """Return the first-order changes of the target errors (h,) after the handles moved."""

@@ -8,15 +8,17 @@ from deform_shapes import search_from_rest
 from numpy.testing import assert_allclose, assert_array_equal
 from shapes import regular_polygon
 
-from engine.deform import Deformer, Handles, Objective, Status
+from engine.deform import ActiveBound, Deformer, Handles, Objective, Status
 from engine.deform.interior_point.continuation import (
     AT_A_SADDLE,
     CENTRED,
     LOWER,
     LOWER_IN_THE_OPEN,
+    RAISED_PER_GAIN,
     advance_search,
     is_centred,
     lower_weight,
+    raise_weight,
 )
 from engine.deform.interior_point.homotopy import (
     FIRST_LEVEL_WIDTH,
@@ -93,6 +95,15 @@ def test_the_weight_falls_where_little_is_left_to_gain_but_not_at_a_saddle():
     assert lower_weight(little).weight == lower_weight(replace(here, length=0.9)).weight
     assert lower_weight(little).weight == LOWER * search.weight
     assert lower_weight(here).weight == LOWER_IN_THE_OPEN * search.weight
+    pressed = here.optimality._replace(active=(ActiveBound("k", 1.0, 0j),))
+    assert lower_weight(replace(here, optimality=pressed)).weight == LOWER * search.weight
+
+
+def test_the_weight_rises_where_bounds_cut_steps_short_that_promise_much():
+    search = search_from_rest(3)
+    promising = replace(search, gain=100.0 * search.weight)
+    assert raise_weight(promising).weight == RAISED_PER_GAIN * promising.gain
+    assert raise_weight(replace(search, gain=search.weight)).weight == search.weight
 
 
 def test_walls_open_from_rungs_that_do_not_depend_on_the_bounds():
