@@ -80,8 +80,8 @@ def draw_badges(
         return _draw_pill(look, text, top, room.x)
     cancellable = _cancellable_job(session, project)
     if cancellable is not None:
-        step, cancel = cancellable
-        text = _("{step} · {keys} cancels").format(step=step, keys=shown_keys(cancel))
+        job_step, cancel = cancellable
+        text = _("{step} · {keys} cancels").format(step=job_step, keys=shown_keys(cancel))
         return _draw_pill(look, text, top, room.x)
     step = find_first_step(project)
     if step is None or tutorials.is_tutorial_shown(session):
