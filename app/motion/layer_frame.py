@@ -81,7 +81,7 @@ class LayerFrame:
     def pivot_frame_at(self, place: complex) -> PivotFrame:
         """Return position and rotation of a point in the layer's space, as exact as the mesh."""
         rest = self.mesh.domain.mesh.vertices
-        found = self.mesh.locate(np.array([place]), rest)
+        found = self.mesh.locate_at_rest([place])
         positions = self.positions
         turn = found.rotations(rest, positions)[0]
         return PivotFrame(complex(found.positions_on(positions)[0]), complex(np.exp(1j * turn)))

@@ -53,12 +53,13 @@ class LayerRuntime(LayerStages):
 
         `among` is the number of layers.
         """
+        mesh = DeformMesh.coarse(clip.layer.domain, among=among)
         return cls(
             layer_id=clip.layer.id,
             picture=picture,
             is_opaque=picture.is_opaque,
             file=clip.layer.picture,
-            store=InbetweenCache(mesh=DeformMesh.coarse(clip.layer.domain, among=among).prepared()),
+            store=InbetweenCache(mesh=mesh.prepared(clip, clip.frames.first)),
             cut=Derived(
                 cut_picture(picture, clip.layer.cut_out, is_alone=among == 1), clip.layer.cut_out
             ),

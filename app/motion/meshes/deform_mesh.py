@@ -1,16 +1,17 @@
 """A mesh that a pose deforms, and points located on the mesh."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 
 import numpy as np
 import numpy.typing as npt
 
-from app.document import Layer, Limbs, Pose
+from app.cut_out import CutOut
+from app.document import Clip, Layer, Limbs, Pose, find_limbs
 from app.motion.meshes.triangle_order import TriangleOrder
 from engine.arrays import Booleans, Complexes, Floats, Integers
-from engine.domain import MeshedDomain
+from engine.domain import ClosedCuts, MeshedDomain, find_closed_cuts
 from engine.domain.meshing.draw_order import copy_draw_order
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.meshing.triangulation import triangulate
@@ -23,7 +24,7 @@ FEWEST_TRIANGLES = 4_000
 # A layer has a coarse mesh only if its own is finer by this factor: everything prepared for a layer
 # is then prepared for both meshes.
 FINER = 2
-_KEPT = 2  # sets of located handles per mesh
+_KEPT = 8  # sets of located points per mesh: handles, limbs, joints, anchors and pivots
 EDGE = 1e-6  # tolerance of barycentric weights for rounding
 
 
@@ -63,6 +64,7 @@ class DeformMesh:
     domain: MeshedDomain  # with the displayed mesh, which may be coarser than the layer's own
     source: MeshedDomain  # the layer's own domain
     is_released: bool = field(init=False, default=False)  # whether its coordinates were freed
+    _cuts: tuple[CutOut, ClosedCuts | None] | None = field(init=False, default=None)
 
     @cached_property
     def order(self) -> TriangleOrder:
@@ -98,11 +100,24 @@ class DeformMesh:
         coarse = replace(source, mesh=copy_draw_order(mesh, source.mesh))
         return cls(domain=coarse, source=source)
 
-    def prepared(self) -> "DeformMesh":
-        """Return the mesh, ready to be deformed without delay; on a worker thread."""
+    def prepared(self, clip: Clip, frame: float) -> "DeformMesh":
+        """Return the mesh, ready to show a frame without delay; on a worker thread."""
         _ = self.coordinates
         self.is_released = False
+        self.order.triangles(clip, frame)
+        self.closed_cuts(clip.layer)
+        self.locate_handles(clip.layer)
+        limbs = find_limbs(clip.layer)
+        if limbs is not None:
+            self.locate_limbs(limbs)
         return self
+
+    def closed_cuts(self, layer: Layer) -> ClosedCuts | None:
+        """Return the closed slits of the mesh, for a layer of its domain; None without slits."""
+        if self._cuts is None or self._cuts[0] is not layer.cut_out:
+            covered = layer.cut_out.covered_lines(layer.corner)
+            self._cuts = layer.cut_out, find_closed_cuts(self.domain, covered)
+        return self._cuts[1]
 
     @property
     def coordinates_bytes(self) -> int:
@@ -121,13 +136,17 @@ class DeformMesh:
         """
         return _locate(self.domain.mesh.triangles, points, positions)
 
+    def locate_at_rest(self, places: Iterable[complex]) -> MeshPoints:
+        """Locate places in the undeformed mesh; the last results are cached."""
+        return self._located(tuple(places))
+
     def locate_handles(self, layer: Layer) -> MeshPoints:
         """Locate a layer's handles in the undeformed mesh."""
-        return self._located(tuple(handle.position for handle in layer.handles))
+        return self.locate_at_rest(handle.position for handle in layer.handles)
 
     def locate_limbs(self, limbs: Limbs) -> MeshPoints:
         """Locate the points of a layer's limbs in the undeformed mesh."""
-        return self._located(tuple(limbs.points.tolist()))
+        return self.locate_at_rest(limbs.points.tolist())
 
     def derivatives(self, positions: Complexes) -> tuple[Complexes, Complexes]:
         """Return f_z and f_z̄ of the drawn triangles at the vertices, each (v,)."""
@@ -151,23 +170,33 @@ def _locate_at_rest(mesh: Mesh, places: tuple[complex, ...]) -> MeshPoints:
 
 def _locate(triangles: Integers, points: Complexes, positions: Complexes) -> MeshPoints:
     corners = positions[triangles]
-    origin, side, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2]
-    other = other - origin
-    area = _cross(side, other)
+    low, high = corners.real.min(axis=1), corners.real.max(axis=1)
+    bottom, top = corners.imag.min(axis=1), corners.imag.max(axis=1)
     found, weights = [], []
     for point in points:
-        offset = point - origin
-        v, w = _cross(offset, other) / area, _cross(side, offset) / area
-        depth = np.minimum(np.minimum(v, w), 1.0 - v - w)
-        inside = np.flatnonzero(depth >= -EDGE)
+        x, y = point.real, point.imag
+        near = np.flatnonzero((low <= x) & (x <= high) & (bottom <= y) & (y <= top))
+        near_weights = _barycentric(point, corners[near])
+        inside = np.flatnonzero(near_weights.min(axis=1) >= -EDGE)
+        if not len(inside):
+            near, near_weights = np.arange(len(triangles)), _barycentric(point, corners)
+            inside = near_weights.min(axis=1).argmax()[None]
         # Of overlapping triangles, the last is drawn on top.
-        index = int(inside[-1]) if len(inside) else int(np.argmax(depth))
-        found.append(index)
-        weights.append((1.0 - v[index] - w[index], v[index], w[index]))
+        found.append(near[inside[-1]])
+        weights.append(near_weights[inside[-1]])
     return MeshPoints(
         vertices=triangles[np.array(found, dtype=np.intp)],
         weights=np.array(weights, dtype=np.float64).reshape(len(found), 3),
     )
+
+
+def _barycentric(point: complex, corners: Complexes) -> Floats:
+    """Return the barycentric weights (m, 3) of a point in triangles with these corners (m, 3)."""
+    origin, side = corners[:, 0], corners[:, 1] - corners[:, 0]
+    other, offset = corners[:, 2] - origin, point - origin
+    area = _cross(side, other)
+    v, w = _cross(offset, other) / area, _cross(side, offset) / area
+    return np.column_stack([1.0 - v - w, v, w])
 
 
 def _mean_derivatives(mesh: Mesh, positions: Complexes) -> tuple[Complexes, Complexes]:

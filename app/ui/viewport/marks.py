@@ -15,7 +15,7 @@ from app.document import (
 )
 from app.editor import Project, Session
 from app.editor.tools.tool import scene_outlines
-from app.motion import BoundingBox, DeformMesh, LayerFrame, MeshPoints, MotionPaths
+from app.motion import BoundingBox, LayerFrame, MotionPaths
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
 from app.ui.style.theme import Palette, interface_scale, pixel_density
 from app.ui.viewport.paths import mark_path
@@ -138,24 +138,18 @@ def find_anchor(project: Project, shown: LayerFrame) -> complex | None:
         rest = _deepest_point(layer.domain)
     if rest is None or any(handle.position == rest for handle in layer.handles):
         return None
-    return complex(_located(shown.mesh, rest).positions_on(shown.positions)[0])
+    return complex(shown.mesh.locate_at_rest([rest]).positions_on(shown.positions)[0])
 
 
 def clear_mark_caches() -> None:
     """Clear the caches after a project was closed."""
     _deepest_point.cache_clear()
-    _located.cache_clear()
     _still.cache_clear()
 
 
 @lru_cache(maxsize=64)
 def _deepest_point(domain: MeshedDomain) -> complex:
     return deepest_point(domain.outline, domain.loops[1:])
-
-
-@lru_cache(maxsize=4)
-def _located(mesh: DeformMesh, place: complex) -> MeshPoints:
-    return mesh.locate(np.array([place]), mesh.domain.mesh.vertices)
 
 
 @lru_cache(maxsize=4)

@@ -18,7 +18,11 @@ FINEST = 1e-3
 
 
 def spread_depth(
-    mesh: Mesh, points: Complexes, depths: Sequence[float], extents: Sequence[float]
+    mesh: Mesh,
+    paths: scipy.sparse.csr_array,
+    points: Complexes,
+    depths: Sequence[float],
+    extents: Sequence[float],
 ) -> Floats:
     """Spread the depths of points over a shape, along it and never across a gap.
 
@@ -26,6 +30,8 @@ def spread_depth(
     ----------
     mesh : Mesh
         Of the shape at rest.
+    paths : sparse array, shape (v, v)
+        Its `find_paths`.
     points : complex128, shape (p,)
         In the shape; each is moved to the nearest vertex.
     depths : sequence of float
@@ -42,14 +48,12 @@ def spread_depth(
 
     Notes
     -----
-    Paths run along edges and straight across them from triangle to triangle, so that they are at
-    most a few percent longer than the shortest ones. Cost: Dijkstra's algorithm within the extents.
+    Cost: Dijkstra's algorithm within the extents.
     """
     above, below = np.zeros(len(mesh.vertices)), np.ones(len(mesh.vertices))
-    graph = _ways(mesh)
     for point, depth, extent in zip(points.tolist(), depths, extents, strict=True):
         start = int(np.argmin(np.abs(mesh.vertices - point)))
-        ways = dijkstra(graph, directed=False, indices=[start], limit=extent)[0]
+        ways = dijkstra(paths, directed=False, indices=[start], limit=extent)[0]
         part = np.clip((extent - ways) / ((1 - PLATEAU) * extent), 0.0, 1.0)
         weight = part * part * (3 - 2 * part)
         # w / (1 − w), beside the 1 of no depth at all: a single point contributes w times its
@@ -64,7 +68,7 @@ def spread_depth(
 def find_distances(mesh: Mesh, start: complex, ends: Complexes) -> Floats:
     """Return the distances from a point of a shape to others (n,), inside the shape."""
     first, *others = (int(np.argmin(np.abs(mesh.vertices - each))) for each in (start, *ends))
-    found: Floats = dijkstra(_ways(mesh), directed=False, indices=[first])[0][others]
+    found: Floats = dijkstra(find_paths(mesh), directed=False, indices=[first])[0][others]
     return found
 
 
@@ -77,8 +81,12 @@ def sort_by_depth(mesh: Mesh, depths: Floats) -> Integers:
     return readonly(mesh.triangles[np.argsort(levels, kind="stable")])
 
 
-def _ways(mesh: Mesh) -> scipy.sparse.csr_array:
-    """Return the lengths of the edges, and of the straight paths across them."""
+def find_paths(mesh: Mesh) -> scipy.sparse.csr_array:
+    """Return the lengths (v, v) of the edges, and of the straight paths across them.
+
+    They run from triangle to triangle, so that a way along them is at most a few percent longer
+    than the shortest one inside the shape.
+    """
     near, far = np.concatenate([mesh.edges().astype(np.intp), _across(mesh)]).T
     lengths = np.abs(mesh.vertices[far] - mesh.vertices[near])
     count = len(mesh.vertices)

@@ -428,7 +428,7 @@ def test_the_nearest_interval_is_built_first(clip, prepared):
         assert isinstance(vertices, StreamedVertices)
         assert_allclose(vertices.positions, expected, rtol=0, atol=2e-6 * size)
         assert vertices.derivatives is None
-    prepared.mesh.prepared()
+    prepared.mesh.prepared(clip, 20)
     assert isinstance(prepared.vertices(clip, 20), VertexArray)  # a key itself
 
 

@@ -32,7 +32,6 @@ from app.motion import (
     parenting_key,
 )
 from app.texts import _
-from engine.domain import MeshedDomain
 
 UNMADE = _("The in-betweens of these keys cannot be made")
 # Awaited jobs and jobs of a few milliseconds run on the "hand" lane, ahead of long in-betweens.
@@ -164,10 +163,12 @@ def _prepare(
             store = InbetweenCache(mesh=mesh, budget=project.runtimes.budget)
             setattr(runtime, "fine" if is_fine else "store", store)
 
-        work = partial(_prepared, make, domain)
+        def work() -> DeformMesh:
+            return make(domain).prepared(clip, frame)
+
         return _interval_job(session, kind, runtime, clip, work=work, done=begin)
     if runtime is project.layer_runtime and store.mesh.is_released:
-        prepare_mesh, done = store.mesh.prepared, lambda _mesh: None
+        prepare_mesh, done = partial(store.mesh.prepared, clip, frame), lambda _mesh: None
         return _interval_job(session, kind, runtime, clip, work=prepare_mesh, done=done)
     is_edited = runtime is project.layer_runtime and not is_fine
     lacking = store.missing_segments(clip, frame, is_edited=is_edited)
@@ -184,10 +185,6 @@ def _prepare(
         lacking = lacking[:1]
     prepare = store.segments_job(clip, lacking, runtime.store.sampler)
     return _interval_job(session, kind, runtime, clip, work=prepare, done=store.add)
-
-
-def _prepared(make: Callable[[MeshedDomain], DeformMesh], domain: MeshedDomain) -> DeformMesh:
-    return make(domain).prepared()
 
 
 def _stream(session: Session, project: Project) -> Iterator[Job]:

@@ -15,7 +15,6 @@ from app.ui.viewport.backdrop import measure_edge
 from app.ui.viewport.cutout_overlay import CutView
 from app.ui.viewport.stiffness_overlay import measure_vertex_stiffness
 from engine.arrays import Bytes, Floats
-from engine.domain import find_closed_cuts
 from engine.maps import distortion
 
 
@@ -165,7 +164,7 @@ class GpuResources:
                 self.picture(layer),
                 rest=drawn.vertices - shown.corner,
                 triangles=drawn.triangles,
-                seam=find_closed_cuts(mesh.domain, bent.cut_out.covered_lines(bent.corner)),
+                seam=mesh.closed_cuts(bent),
             )
         return self._meshes[mesh, layer]
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine.domain.meshing.depth import sort_by_depth, spread_depth
+from engine.domain.meshing.depth import find_paths, sort_by_depth, spread_depth
 from engine.domain.meshing.triangulation import triangulate
 
 SQUARE = np.array([0, 1, 1 + 1j, 1j])
@@ -11,7 +11,7 @@ U = np.array([0, 1, 1 + 2j, 0.6 + 2j, 0.6 + 0.4j, 0.4 + 0.4j, 0.4 + 2j, 2j])
 
 
 def spread(mesh, point, extent, depth=1.0):
-    return spread_depth(mesh, np.array([point]), [depth], [extent])
+    return spread_depth(mesh, find_paths(mesh), np.array([point]), [depth], [extent])
 
 
 def test_depth_is_whole_near_its_point_and_falls_smoothly_to_nothing():
@@ -49,7 +49,7 @@ def test_depth_goes_along_the_shape_and_never_across_a_gap():
 def test_every_point_keeps_its_own_depth():
     mesh = triangulate(SQUARE, 8_000)
     points, depths = np.array([0.3 + 0.5j, 0.5 + 0.5j, 0.9 + 0.9j]), [1.0, -0.5, 0.25]
-    spread = spread_depth(mesh, points, depths, [0.35, 0.35, 0.1])
+    spread = spread_depth(mesh, find_paths(mesh), points, depths, [0.35, 0.35, 0.1])
     for point, depth in zip(points, depths, strict=True):
         nearest = np.argmin(np.abs(mesh.vertices - point))
         assert spread[nearest] == pytest.approx(depth, abs=1e-6)
@@ -59,7 +59,7 @@ def test_every_point_keeps_its_own_depth():
 
 def test_without_points_nothing_is_in_front():
     mesh = triangulate(SQUARE, 1_000)
-    depths = spread_depth(mesh, np.array([], complex), [], [])
+    depths = spread_depth(mesh, find_paths(mesh), np.array([], complex), [], [])
     assert_array_equal(depths, 0.0)
     assert_array_equal(sort_by_depth(mesh, depths), mesh.triangles)
 

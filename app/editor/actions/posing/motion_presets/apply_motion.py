@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from app.document import Command, Document, Layer, find_motion_edits
+from app.document import Command, Document, Layer, clip_of, find_motion_edits
 from app.editor import pending_changes
 from app.editor.action import do
 from app.editor.actions import playback
@@ -59,7 +59,8 @@ def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
 def _prepare(task: MotionJob, order: MotionRequest, rgba: Bytes) -> MotionJob:
     """Return a job ready for its first pose, with the mesh that shows poses; on the worker."""
     solve = start_motion_solve(task.base, task.before.id, order, rgba)
-    mesh = DeformMesh.coarse(solve.rig.layer.domain).prepared()
+    clip = clip_of(solve.document, task.before.id)
+    mesh = DeformMesh.coarse(clip.layer.domain).prepared(clip, order.first)
     return replace(task, solve=solve, preview=InbetweenCache(mesh=mesh))
 
 

@@ -70,8 +70,7 @@ def shown_joint_places(session: Session, project: Project) -> dict[str, complex]
     draft, shown = session.tools.motion_setup, project.layer_runtime.shown
     if draft is None or shown is None or not draft.joints:
         return {}
-    rest = np.array(list(draft.joints.values()), dtype=np.complex128)
-    places = shown.mesh.locate(rest, shown.mesh.domain.mesh.vertices).positions_on(shown.positions)
+    places = shown.mesh.locate_at_rest(draft.joints.values()).positions_on(shown.positions)
     return dict(zip(draft.joints, places.tolist(), strict=True))
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-from app.document import Command, Document, Layer
+from app.document import Command, Document, Layer, clip_of
 from app.editor import pending_changes
 from app.editor.action import do
 from app.editor.actions import playback
@@ -49,7 +49,18 @@ def rig_layer(session: Session) -> None:
 def _begin(session: Session, project: Project) -> None:
     layer, draft = project.layer, session.tools.motion_setup
     rgba, frame = project.layer_runtime.picture.rgba, playback.current_frame(session, project)
-    work = partial(_find_rig, project.document, layer, rgba, draft or frame)
+    document, runtime = project.document, project.layer_runtime
+    meshes = [store.mesh for store in (runtime.store, runtime.fine) if store is not None]
+
+    def work() -> FoundRig:
+        found = _find_rig(document, layer, rgba, draft or frame)
+        if found.layer is not None:
+            # Until the domain is rebuilt, the rig is shown on the present meshes.
+            clip = clip_of(document.with_layer(found.layer), layer.id)
+            for mesh in meshes:
+                mesh.prepared(clip, frame)
+        return found
+
     done = partial(_take_rig, session, project, layer)
     pending_changes.cancel_pending_change(session, project, RIGGING)
     pending_changes.begin_pending_change(session, project, RIGGING, work, done)
