@@ -156,6 +156,7 @@ from app.document.queries.applied_motion import (
     is_motion_unedited as is_motion_unedited,
     keys_of_motion as keys_of_motion,
     motion_notices as motion_notices,
+    without_motion_springs as without_motion_springs,
 )
 from app.document.queries.auto_pins import (
     PinnedSegment as PinnedSegment,

@@ -27,6 +27,7 @@ from app.rigging.anatomy.lines.near_limbs import (
 from app.rigging.anatomy.lines.tracked_joints import with_tracked_legs as with_tracked_legs
 from app.rigging.kinematics.chains import bend_side as bend_side, solve_chain as solve_chain
 from app.rigging.kinematics.recordings import FittedKeys as FittedKeys, fit_keys as fit_keys
+from app.rigging.kinematics.spring_delay import find_spring_frequency as find_spring_frequency
 from app.rigging.kinematics.springs import (
     FADE_FRAMES as FADE_FRAMES,
     SpringResponse as SpringResponse,
@@ -48,6 +49,7 @@ from app.rigging.motions.kinds import (
 )
 from app.rigging.motions.library.table import MOTIONS as MOTIONS, find_motion as find_motion
 from app.rigging.motions.motion import (
+    FollowingJoint as FollowingJoint,
     Motion as Motion,
     MotionTemplate as MotionTemplate,
     Parameters as Parameters,

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 from app.document.channels.kinds import DEPTH
@@ -40,6 +41,12 @@ def is_motion_unedited(layer: Layer, motion: AppliedMotion) -> bool:
     return digest_motion(layer, motion) == motion.digest
 
 
+def without_motion_springs(layer: Layer, motion: AppliedMotion) -> Layer:
+    """Return a layer without the springs of a motion preset; edited springs stay."""
+    springs = tuple(each for each in layer.springs if each not in motion.springs)
+    return layer if springs == layer.springs else replace(layer, springs=springs)
+
+
 class MotionEdits(NamedTuple):
     """What a person changed in the keys of a motion preset.
 
@@ -53,12 +60,15 @@ class MotionEdits(NamedTuple):
         Keys that were inserted or moved in time.
     kept : mapping
         The keys of the preset by their numbers, for their easings and tangents.
+    springs : frozenset of int
+        Handles whose springs were edited or deleted.
     """
 
     shifts: Mapping[int, Mapping[int, complex]]
     deleted: frozenset[int]
     others: tuple[Keyframe, ...]
     kept: Mapping[int, Keyframe]
+    springs: frozenset[int] = frozenset()
 
     @property
     def are_any(self) -> bool:
@@ -86,7 +96,8 @@ def find_motion_edits(layer: Layer, motion: AppliedMotion) -> MotionEdits:
         shifts |= {number: ways} if ways else {}
     others = tuple(key for offset, key in own.items() if offset not in made)
     gone = frozenset(range(len(motion.made))) - kept.keys() - {0}
-    return MotionEdits(shifts, gone, others if motion.made else (), kept)
+    springs = frozenset(each.handle for each in motion.springs if each not in layer.springs)
+    return MotionEdits(shifts, gone, others if motion.made else (), kept, springs)
 
 
 def motion_notices(document: Document) -> tuple[str, ...]:

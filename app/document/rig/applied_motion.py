@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Self
 
+from app.document.channels.springs import Spring
 from app.document.checks import LAST_FRAME, NOTHING, Unknown, require, require_distinct
 from app.rigging import Parameters, find_kind, find_motion
 from app.texts import N_
@@ -45,6 +46,7 @@ class AppliedMotion:
     stride: float = 0.0
     digest: str = ""  # of the keys that the preset made
     made: tuple[MadeKey, ...] = ()  # the keys of one repeat; empty in earlier projects
+    springs: tuple[Spring, ...] = ()  # as the preset made them
 
     # Fields of a later version.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)

@@ -16,10 +16,12 @@ from app.document import (
     SLIDER,
     Clip,
     DistortionRange,
+    Layer,
     Variant,
     motion_anchor,
     motion_source,
     slider_poses,
+    spring_root,
     stiffness_source,
 )
 from app.motion.inbetweens.keyframe_motion import KeyframeMotion
@@ -40,6 +42,7 @@ FORCE = 64.0
 # Number of outline points that hold the shape if a track's reach is small, and their largest and
 # smallest firmness. The smallest has no effect.
 HELD, HELD_BY, LEAST_HELD = 64, 75.0, 1e-9
+STILL = 32  # number of outline points, of which some stay where springs swing
 
 
 class BaseMotionFrame(NamedTuple):
@@ -105,14 +108,14 @@ class FrameCorrector:
         self._points = np.array([each.position for each in layer.handles], dtype=np.complex128)
         pins = AutoPins(clip, variant, sampler)
         gives = any(track.enabled and track.reach < 1.0 for track in layer.tracks)
+        count, outline = HELD if gives else 0, layer.domain.outline
+        self._outline = outline[np.linspace(0, len(outline), count, endpoint=False).astype(np.intp)]
+        self._still = _find_still_points(layer)
         if not gives and not layer.bone_joints:
             self._corrector, own = pins.prepare()
-        elif not gives:
-            self._corrector, own = prepare_corrector(layer, sampler)
         else:
-            outline = layer.domain.outline
-            held = outline[np.linspace(0, len(outline), HELD, endpoint=False).astype(np.intp)]
-            self._corrector, own = prepare_corrector(layer, sampler, held)
+            held = np.append(self._outline, self._still)
+            self._corrector, own = prepare_corrector(layer, sampler, held if len(held) else None)
         stiffness = self._corrector.boundary.stiffness
         self._of_what = (
             *(self._corrector.points.tobytes(), stiffness.tobytes(), layer.widest_bounds),
@@ -202,33 +205,40 @@ class FrameCorrector:
         return self._remembered((base_content, self._of_what, *_content(wanted)), solve)
 
     def _targets(self, base: CorrectionBase, wanted: SecondaryTargets) -> PointTargets:
-        """Return targets of handles with tracks and springs; other handles keep their places.
+        """Return targets of handles with tracks and springs; others keep their places.
 
-        Handles close to them, or close to a fixed anchor, have less firmness, since they would tear
-        the drawing.
+        With bones, so does the drawing beyond a spring's arm: soles stay on the ground while a tail
+        swings. What is close to a target, or to a fixed anchor, has less firmness, since it would
+        tear the drawing.
         """
-        count, more = len(self._points), len(base.places) - len(self._points)
-        size = self._corrector.boundary.size
-        weights = np.where(wanted.has_target, 1.0, self._away_from(self._points[wanted.has_target]))
+        count, more = len(self._points), len(self._outline) + len(self._still)
+        size, moved = self._corrector.boundary.size, self._points[wanted.has_target]
+        weights = np.where(wanted.has_target, 1.0, self._away_from(self._points, moved))
+        # A track may lead any part.
+        at_still = self._away_from(self._still, moved) * (not wanted.tracked)
         if self._is_anchored:
-            weights = weights * self._away_from(np.array([self.clip.layer.anchor]))
+            anchor = np.array([self.clip.layer.anchor])
+            weights = weights * self._away_from(self._points, anchor)
+            at_still = at_still * self._away_from(self._still, anchor)
         # The rest of the outline is held more firmly for a smaller reach.
         held = HELD_BY * (1.0 - wanted.reach) ** 2
-        give = more * size**2 / max(held, LEAST_HELD)
+        give = len(self._outline) * size**2 / max(held, LEAST_HELD)
         return PointTargets(
             offsets=np.append(wanted.positions - base.places[:count], np.zeros(more)),
-            weights=np.append(weights, np.ones(more)),
+            weights=np.concatenate([weights, np.ones(len(self._outline)), at_still]),
             is_anchored=self._is_anchored,
             yield_forces=np.append(
                 np.where(wanted.has_target, FORCE / size, np.inf), np.full(more, np.inf)
             ),
             rotations=np.append(wanted.rotations, np.full(more, np.nan)),
-            compliances=np.append(np.zeros(count), np.full(more, give)),
+            compliances=np.concatenate(
+                [np.zeros(count), np.full(len(self._outline), give), np.zeros(len(self._still))]
+            ),
         )
 
-    def _away_from(self, others: Complexes) -> Floats:
-        """Return the firmness (h,) of handles near some points: 0 at a point, 1 far away."""
-        away = np.abs(self._points[:, None] - others).min(axis=1, initial=np.inf)
+    def _away_from(self, places: Complexes, others: Complexes) -> Floats:
+        """Return the firmness at places near some points: 0 at a point, 1 far away."""
+        away = np.abs(places[:, None] - others).min(axis=1, initial=np.inf)
         return firmness_at(away / self._corrector.boundary.size)
 
     def _remembered(
@@ -244,6 +254,24 @@ class FrameCorrector:
                 del self._known[next(iter(self._known))]
             self._known[key] = known
         return known
+
+
+def _find_still_points(layer: Layer) -> Complexes:
+    """Return points of the outline that stay where they are as springs swing; none without bones.
+
+    They are nearer to other handles than to handles with springs and those about which they swing.
+    """
+    springs = [spring for spring in layer.springs if spring.enabled]
+    if not (springs and layer.bone_joints):
+        return np.zeros(0, dtype=np.complex128)
+    arms = {spring.handle for spring in springs}
+    arms |= {root for spring in springs if (root := spring_root(layer, spring)) is not None}
+    outline = np.concatenate(layer.domain.loops)
+    outline = outline[np.linspace(0, len(outline), STILL, endpoint=False).astype(np.intp)]
+    handles = np.array([handle.position for handle in layer.handles])
+    nearest = np.abs(outline[:, None] - handles).argmin(axis=1)
+    is_arm = np.array([handle.id in arms for handle in layer.handles])
+    return np.asarray(outline[~is_arm[nearest]])
 
 
 def _content(parts: Iterable[object]) -> tuple[object, ...]:

@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 EIGHTHS = tuple(number / 8 for number in range(8))  # phases of key poses
+SAMPLES = 64  # of a cycle
 Periodic = Callable[[float], float]  # of the phase, with period 1
 
 
@@ -37,6 +38,12 @@ def even_curve(*values: float) -> Curve:
 
 
 STEADY = even_curve(0.0)
+
+
+def count_swings(curve: Periodic) -> int:
+    """Return how often a curve swings in a cycle: the number of its largest harmonic."""
+    samples = [curve(number / SAMPLES) for number in range(SAMPLES)]
+    return 1 + int(np.abs(np.fft.rfft(samples))[1:].argmax())
 
 
 def bump(share: float) -> float:

@@ -8,17 +8,24 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.rigging.motions.body import Body, other_side, without_side
-from app.rigging.motions.curves import STEADY, Periodic, covering_curve
-from app.rigging.motions.motion import JointPose, MotionInstance, MotionTemplate, Parameters
+from app.rigging.motions.curves import STEADY, Periodic, count_swings, covering_curve
+from app.rigging.motions.motion import (
+    FollowingJoint,
+    JointPose,
+    MotionInstance,
+    MotionTemplate,
+    Parameters,
+)
 from app.rigging.motions.stepping import FootSteps
 from app.rigging.motions.steps import Gait, required_drop, solve_leg_ik
 from app.rigging.motions.timing import EVEN, Timing
 
 FEET = (("foot.L", 0.0), ("foot.R", 0.0))
 STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, landings=FEET, gathered=0.0, straight=1.0)
-# A tail of several bones swings by this factor more than one that turns at the hips, and its last
-# bone is later than its first by this share of the cycle.
-TAIL_SWING, TAIL_LAG = 2.2, 0.25
+# Factors by which a tail with a base swings more than one that turns at the hips: a tail of one
+# bone, and the first bone of a longer one. Springs move the other bones, which swing farther.
+TAIL_SWING, LEADING_SWING = 2.2, 0.9
+TAIL_LAG = 0.25  # of a swing: the tip of a long tail is later than its first bone
 LONGER = 1.3  # ratio of the lengths of arms of which the longer one waves
 LEVEL_HEAD = 0.7  # of the trunk's lean, by which the head turns back
 SAMPLES = 96  # of a cycle, at which the lowest position of the hips is searched
@@ -254,18 +261,33 @@ class _LimbInstance(MotionInstance):
         }
         return delays.get(joint, 0.0)
 
-    def _tail_turn(self, name: str, phase: float) -> float:
-        """Return the rotation of a bone of the tail: each follows the one before it."""
-        curve, joints = self.template.turns.get("tail"), self.body.tail
+    @property
+    def following(self) -> tuple[FollowingJoint, ...]:
+        """The joints of a tail beyond its first bone, each later than the one before it."""
+        curve, joints = self._tail_curve, self.body.tail
+        if curve is None or len(joints) < 3:
+            return ()
+        swings, bones = count_swings(curve), len(joints) - 1
+        return tuple(
+            FollowingJoint(joint, joints[1], swings, TAIL_LAG * number / bones)
+            for number, joint in enumerate(joints[2:], 1)
+        )
+
+    @property
+    def _tail_curve(self) -> Periodic | None:
+        curve = self.template.turns.get("tail")
         if curve is None and self.body.kind.name != "biped-front":
             curve = self.template.leans.get("tail")
-        number = joints.index(name)
-        if curve is None or number == 0:
-            return 0.0  # its base is a part of the body
-        bones, of = len(joints) - 1, self.parameters
-        late = of.tail_delay + TAIL_LAG * (number - 1) / bones
-        share = TAIL_SWING * 2 * number / (bones * (bones + 1))
-        return self.body.facing * of.size * of.energy * share * math.radians(curve(phase - late))
+        return curve
+
+    def _tail_turn(self, name: str, phase: float) -> float:
+        """Return the rotation of a bone of the tail: only the first swings, about its base."""
+        curve, joints, of = self._tail_curve, self.body.tail, self.parameters
+        if curve is None or name != joints[1]:
+            return 0.0
+        share = TAIL_SWING if len(joints) == 2 else LEADING_SWING
+        turn = math.radians(curve(phase - of.tail_delay))
+        return self.body.facing * of.size * of.energy * share * turn
 
     def _lean(self, joint: str) -> float:
         """Return how far a joint turns as the trunk leans forwards; the head stays upright."""

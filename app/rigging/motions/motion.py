@@ -73,6 +73,15 @@ class JointPose(NamedTuple):
     sides: Mapping[str, int] = MappingProxyType({})  # to which side bones bend at their joints
 
 
+class FollowingJoint(NamedTuple):
+    """A joint that a spring moves: it swings about its root, later than the root turns."""
+
+    joint: str
+    root: str
+    swings: int  # of the motion in a cycle
+    delay: float  # in periods of a swing
+
+
 class MotionInstance(ABC):
     """A motion of one body, in place."""
 
@@ -84,6 +93,11 @@ class MotionInstance(ABC):
     def stride(self) -> float:
         """Distance that the body moves to the right in a cycle, in pixels; 0 without steps."""
         return 0.0
+
+    @property
+    def following(self) -> tuple[FollowingJoint, ...]:
+        """The joints that follow others by springs; a pose leads them straight on."""
+        return ()
 
 
 class MotionTemplate(ABC):
@@ -187,6 +201,11 @@ class Performance:
     def stride(self) -> float:
         """Distance that the ground passes to the left in a cycle in place, in pixels."""
         return 0.0 if self.parameters.travel else self.instance.stride
+
+    @property
+    def following(self) -> tuple[FollowingJoint, ...]:
+        """The joints that follow others by springs."""
+        return self.instance.following
 
     def pose_at(self, phase: float, cycles: float = 0.0) -> JointPose:
         """Return the joint positions at a phase, after a number of cycles.

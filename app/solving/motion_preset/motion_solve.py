@@ -34,6 +34,7 @@ from app.solving.motion_preset.key_poses import (
 from app.solving.motion_preset.limb_cuts import PARTED, find_limb_cuts, part_limbs
 from app.solving.motion_preset.misses import describe_misses
 from app.solving.motion_preset.motion_request import MotionRequest, find_rest_body
+from app.solving.motion_preset.preset_springs import make_springs, with_springs
 from app.solving.motion_preset.splicing import count_blend_frames, splice_motion
 from app.texts import _
 from engine.arrays import Bytes
@@ -199,9 +200,9 @@ def start_motion_solve(
         document = part_limbs(document, identity, cuts, rgba)
         body = find_rest_body(document.layer(identity), replace(order, joints=cuts.joints))
     document, joints = rig_body(document, identity, body, order.handles)
-    into = document.layer(identity)
     lead_frames = count_blend_frames(before, order.first, document.fps)
     start = order.first + lead_frames
+    performed = plan_performance(order, body, period)
     given = AppliedMotion(
         motion=order.motion,
         kind=order.kind,
@@ -212,8 +213,12 @@ def start_motion_solve(
         start=start,
         last=start + order.repeat_count * period,
         repeat_count=order.repeat_count,
-        stride=plan_performance(order, body, period).stride,
+        stride=performed.stride,
+        springs=make_springs(performed.following, joints, period / document.fps),
     )
+    edited = order.edits.springs if order.edits is not None else ()
+    into = with_springs(document.layer(identity), given, edited)
+    document = document.with_layer(into)
     lead = None
     if lead_frames:
         lead = fit_shown_pose(Rig.of(into), clip_of(document, identity), order.first)

@@ -301,6 +301,7 @@ APPLIED_MOTION = record(
     Field("stride", NUMBER, default=0.0),
     Field("digest", TEXT),
     Field("made", list_of(MADE_KEY), default=()),
+    Field("springs", list_of(SPRING), default=()),
 )
 
 

@@ -269,7 +269,7 @@ def test_parameters_have_ranges():
         Body(kind=find_kind("chain"), joints={"wing": 0j}, box=(0j, 1 + 1j))
 
 
-def test_bones_of_a_tail_follow_one_another_from_a_base_that_the_body_carries():
+def test_the_first_bone_of_a_tail_swings_and_springs_move_the_others():
     rest = body("four-legs")
     tip, hips = rest.joints["tail"], rest.joints["hips"]
     between = {f"tail.{n}": hips + n / 4 * (tip - hips) for n in (1, 2, 3)}
@@ -279,13 +279,20 @@ def test_bones_of_a_tail_follow_one_another_from_a_base_that_the_body_carries():
     moved = places("walk", "four-legs", shares, of=chained)
     base = (moved["tail.1"] - moved["hips"]) / (moved["chest"] - moved["hips"])
     assert_allclose(base, (between["tail.1"] - hips) / (rest.joints["chest"] - hips), atol=1e-9)
-    late = []
-    for one, other in pairwise(chained.tail):
-        bone = chained.joints[other] - chained.joints[one]
-        turned = np.angle((moved[other] - moved[one]) / bone)
-        late.append(int(turned[:-1].argmax()))
-    assert late == sorted(late)
-    assert late[0] < late[-1]
+    turned = [
+        np.angle((moved[other] - moved[one]) / (chained.joints[other] - chained.joints[one]))
+        for one, other in pairwise(chained.tail)
+    ]
+    assert np.ptp(turned[0]) > 0.1
+    assert_allclose(turned[1:], [turned[0]] * 2, atol=1e-9)
+    following = find_motion("walk").perform(chained, Parameters()).following
+    assert [(each.joint, each.root, each.swings) for each in following] == [
+        ("tail.3", "tail.2", 1),
+        ("tail", "tail.2", 1),
+    ]
+    assert 0 < following[0].delay < following[1].delay < 0.25
+    assert find_motion("wag").perform(chained, Parameters()).following[0].swings == 2
+    assert not find_motion("walk").perform(rest, Parameters()).following
 
 
 def test_legs_that_are_one_above_their_crotch_part_before_they_close():

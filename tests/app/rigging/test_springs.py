@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
-from app.rigging import FADE_FRAMES, simulate_spring, turn_arm
+from app.rigging import FADE_FRAMES, find_spring_frequency, simulate_spring, turn_arm
 from app.rigging.kinematics.oscillator import oscillator_flow
 from app.rigging.kinematics.springs import INVISIBLE, WIDEST
 from engine.errors import EngineError
@@ -336,3 +336,22 @@ def test_what_no_spring_can_do_is_refused_in_words(changes, words):
 def test_a_time_that_is_no_time_is_refused():
     with pytest.raises(EngineError, match="must be finite"):
         simulate_spring(circle(24), 24, frequency=2, damping=0.2).at([1.0, np.nan])
+
+
+@pytest.mark.parametrize("damping", [0.35, 0.5])
+@pytest.mark.parametrize("delay", [0.02, 0.125, 0.2])
+def test_spring_of_a_delay_is_so_late_in_a_steady_swing(delay, damping):
+    count, swings = 2400, 2
+    base = 100 * np.exp(2j * np.pi * swings * np.arange(count + 1) / count)
+    frequency = find_spring_frequency(swings * 1.0, delay, damping)
+    response = simulate_spring(base, count, frequency=frequency, damping=damping, loop=True)
+    followed = base + response.at(np.arange(count + 1))
+    assert_allclose(np.angle(followed / base), -2 * np.pi * delay, atol=0.01)
+    assert_allclose(followed[-1], followed[0], rtol=1e-12)
+
+
+def test_spring_cannot_be_late_by_half_a_period():
+    with pytest.raises(EngineError, match=r"cannot be later by 0\.5"):
+        find_spring_frequency(1.0, 0.5, 0.35)
+    with pytest.raises(EngineError, match="cannot be later by 0 "):
+        find_spring_frequency(1.0, 0.0, 0.35)

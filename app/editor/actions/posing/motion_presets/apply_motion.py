@@ -5,7 +5,14 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from app.document import Command, Document, Layer, clip_of, find_motion_edits
+from app.document import (
+    Command,
+    Document,
+    Layer,
+    clip_of,
+    find_motion_edits,
+    without_motion_springs,
+)
 from app.editor import pending_changes
 from app.editor.action import do
 from app.editor.actions import playback
@@ -91,12 +98,17 @@ def _motion_request(draft: MotionSetup, before: Layer) -> MotionRequest:
 def _without(document: Document, draft: MotionSetup) -> Document:
     """Return a document without the motion that a draft replaces.
 
-    Only its own keys are deleted, also those that were moved. One of them stays if the layer has no
-    other.
+    Only its own keys and springs are deleted, also keys that were moved. One of them stays if the
+    layer has no other.
     """
     given, layer = draft.applied_motion, document.layer(draft.layer)
     if given is None:
         return document
+    layer = without_motion_springs(layer, given)
+    if draft.replaces_edits:
+        made = {spring.handle for spring in given.springs}
+        springs = tuple(each for each in layer.springs if each.handle not in made)
+        layer = replace(layer, springs=springs)
     kept = [key for key in layer.keys if key.motion != given.id]
     return document.with_layer(
         replace(
