@@ -223,10 +223,15 @@ class _Recording:
 
 
 def _filled(times: Floats, places: Complexes) -> tuple[Floats, Complexes]:
-    """Return a recording with places at the frames in its gaps, on straight lines."""
+    """Return a recording with places at its end frames and in its gaps, on straight lines.
+
+    Without a place at an end frame, its key would be extrapolated from the places before.
+    """
     frames = np.arange(np.ceil(times[0]), times[-1])
     following = np.searchsorted(times, frames, side="right")
-    frames = frames[times[following] - times[following - 1] > GAP]
+    is_added = times[following] - times[following - 1] > GAP
+    is_added[:1] = is_added[-1:] = True
+    frames = frames[is_added & ~np.isin(frames, times)]
     where = np.searchsorted(times, frames)
     return np.insert(times, where, frames), np.insert(places, where, _along(frames, times, places))
 

@@ -169,6 +169,15 @@ def test_a_place_in_each_frame_is_enough(late):
         assert_allclose(keys.velocities[1:-1], slopes, rtol=0, atol=0.01)
 
 
+@pytest.mark.parametrize("offset", [-1e-12, 0, 1e-12, 0.2])
+def test_end_keys_are_on_the_recording_whenever_its_places_were_seen(offset):
+    times = 0.4 * np.arange(13) + offset
+    places = np.repeat([0, 8, 14, 18, 20, 21, 21], 2)[:13] * (3 + 4j)
+    keys = fit_keys(times, places, 0.3)
+    recording = np.interp(keys.frames, times, places.real) * (1 + 4j / 3)
+    assert_allclose(keys.places, recording, rtol=0, atol=10.0)
+
+
 def test_in_a_gap_of_the_recording_the_way_is_straight():
     times = np.append(np.arange(0, 10, 0.3), np.arange(60, 70, 0.3))
     places = np.where(times < 30, 12 * times, 1000 - 12 * times)
