@@ -150,10 +150,15 @@ def deferred_label(project: Project) -> str:
     """Return what waits for a pending change, for the status bar; empty if nothing does."""
     if project.drag is not None and project.drag.is_awaited:
         return project.drag.label
+    return with_deferred(project, pending_label(project)) if project.pending.deferred else ""
+
+
+def with_deferred(project: Project, tasks: str) -> str:
+    """Return a text about pending tasks with the action that waits for them, if any."""
     if not project.pending.deferred:
-        return ""
+        return tasks
     text = _("{tasks}, then: {action}")
-    return text.format(tasks=pending_label(project), action=project.pending.deferred[0].what)
+    return text.format(tasks=tasks, action=project.pending.deferred[0].what)
 
 
 def pending_label(project: Project) -> str:

@@ -1,5 +1,6 @@
 """The window's runtime values of a layer, and of its comparison by another method."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self
 
@@ -10,6 +11,7 @@ from app.editor.work.revised import Revised
 from app.motion import (
     DeformMesh,
     InbetweenCache,
+    LayerFrame,
     LayerStages,
     MemoryBudget,
     SceneFrame,
@@ -114,6 +116,17 @@ class LayerRuntimes(Revised):
         # An equal frame is no change.
         self.displayed = self.displayed if displayed == self.displayed else displayed
         self.compared = self.compared if compared == self.compared else compared
+
+    @property
+    def shown_frames(self) -> dict[int, LayerFrame]:
+        """The shown frames, by layer id."""
+        shown = {layer: runtime.shown for layer, runtime in self.layers.items()}
+        return {layer: frame for layer, frame in shown.items() if frame is not None}
+
+    def show_again(self, frames: Mapping[int, LayerFrame]) -> None:
+        """Go on from earlier frames: a later frame was a preview."""
+        for layer in frames.keys() & self.layers.keys():
+            self.layers[layer].shown = frames[layer]
 
     def __post_init__(self) -> None:
         for runtime in self.layers.values():

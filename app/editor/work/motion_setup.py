@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from app.document import AppliedMotion, Document, Layer, clip_of
-from app.motion import InbetweenCache, SceneFrame, evaluate_layer
+from app.motion import InbetweenCache, LayerFrame, SceneFrame, evaluate_layer
 from app.rigging import MOTIONS, BodyKind, Motion, Parameters, find_kind, other_side
 from app.solving import MotionSolve
 from app.texts import _
@@ -83,6 +83,8 @@ class MotionJob:
         The layer must still be this one when the motion is ready.
     base : Document
         The document without the motion that is replaced.
+    frames_before : mapping
+        The shown frames by layer id, which a cancelled motion leaves.
     solve : MotionSolve, optional
         Progress; None before the first step.
     preview : InbetweenCache, optional
@@ -92,6 +94,7 @@ class MotionJob:
     setup: MotionSetup
     before: Layer
     base: Document
+    frames_before: Mapping[int, LayerFrame]
     solve: MotionSolve | None = None
     preview: InbetweenCache | None = None
 

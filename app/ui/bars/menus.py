@@ -97,6 +97,8 @@ def _languages(session: Session) -> list[Action]:
         for code, name in names.items()
         if imgui.menu_item(name, "", code == current)[0]
     ]
+    imgui.separator()
+    imgui.text_disabled(_("Used from the next start on"))
     imgui.end_menu()
     return actions
 

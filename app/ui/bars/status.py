@@ -124,14 +124,15 @@ def _name_job(session: Session, name: str, kind: JobKind) -> str:
 
 
 def _describe_moving(project: Project) -> str:
-    """Return how far the farthest handle is from its target while a drag goes on; else ""."""
+    """Return how far the farthest handle is from its target, and what waits for it; else ""."""
     drag, shown = project.visible_drag, project.layer_runtime.shown
     if drag is None or drag.is_at_rest or shown is None or shown.pose is None:
         return ""
     errors = measure_target_errors(shown.clip.layer, shown.pose).errors
     if not errors:
         return ""
-    return _("Still moving · {lag:.0f} px to go").format(lag=max(errors.values()))
+    text = _("Still moving · {lag:.0f} px to go").format(lag=max(errors.values()))
+    return pending_changes.with_deferred(project, text)
 
 
 def _idle_hint(session: Session) -> str:

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from overlapping_legs import draw_person
 from silhouettes import paint
 
-from app.document import find_motion_edits, is_motion_unedited
+from app.document import find_motion_edits, is_motion_unedited, shape_commands
 from app.editor import pending_changes
 from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup.cut_out_editing import remove_knife_cut
@@ -21,6 +21,7 @@ from app.editor.actions.posing.motion_presets import (
 )
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.project_files import saving
+from app.editor.actions.updates.stage_jobs import GLIMPSING, REFINING, SKETCHING
 from app.editor.tools import move_tool
 from app.storage.project_file import load_project
 from app.ui.panel import is_in_front
@@ -381,6 +382,23 @@ def test_each_solved_pose_is_shown_until_escape_cancels_the_preset(window, tmp_p
             project.layer_runtime.shown.positions, next(iter(at_rest.layers.values())).positions
         )
     assert project.document is before
+
+
+def test_a_cancelled_preset_leaves_the_frame_that_was_shown_without_its_in_between(window, ghost):
+    with window.session.jobs.held(GLIMPSING, SKETCHING, REFINING):
+        playback.scrub(window.session, 1)
+        editing.edit_layer(window.session, shape_commands.set_variant, "eta")
+        window.frames(3)
+        before = ghost.layer_runtime.shown
+        assert not before.is_current
+        apply_motion.change_applied_motion(window.session, ghost.layer.id, 0, size=0.8)
+        window.until(lambda: ghost.motion_job.solve and len(ghost.motion_job.solve.poses) == 2)
+        with window.session.jobs.held():
+            window.frames()
+            assert np.abs(ghost.layer_runtime.shown.positions - before.positions).max() > 0.1
+            window.run(lambda robot: robot.key_press(int(window.Key.escape)))
+            window.frames(3)
+            assert_allclose(ghost.layer_runtime.shown.positions, before.positions)
 
 
 @pytest.mark.parametrize("how", ["escape", "undo"])

@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bars import drag_bar
 from documents import altered
 
 from app.document import RUBBERY
 from app.document.keyframe import Target
 from app.document.queries.clips import clip_of
 from app.editor.actions import editing
+from app.editor.actions.posing.motion_presets import rigging
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.work.jobs import Jobs
 from app.errors import LissomError
@@ -18,6 +20,19 @@ from app.motion import InbetweenCache
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.reports.curves import TIMES, measure_curves
 from app.ui.bars.status import UPDATES, describe_pose_limit, find_state
+
+
+def test_status_bar_says_what_waits_for_a_pose_that_still_moves(window, loose):
+    drag_bar(window, loose)
+
+    def text():
+        state = find_state(window.session)
+        return "" if state is None else state.text
+
+    window.until(lambda: text().startswith("Still moving"))
+    rigging.rig_layer(window.session)
+    assert re.fullmatch(r"Still moving · \d+ px to go, then: Rig this", text())
+    window.settle()
 
 
 @pytest.mark.usefixtures("loose")

@@ -57,7 +57,8 @@ def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
         )
         return
     base = _without(project.document, draft)
-    task = MotionJob(setup=draft, before=before, base=base)
+    frames = project.runtimes.shown_frames
+    task = MotionJob(setup=draft, before=before, base=base, frames_before=frames)
     order = _motion_request(draft, before)
     rgba = project.runtimes.layers[before.id].picture.rgba
     _step(session, project, task, partial(_prepare, task, order, rgba))
@@ -126,7 +127,7 @@ def _step(
     """Run one step on the worker."""
 
     def failed(error: Exception) -> None:
-        _reopen(session, project, task.setup)
+        _give_up(session, project, task)
         report_failure(session, GIVING.complaint, error)
 
     def arrived(task: MotionJob) -> None:
@@ -138,10 +139,12 @@ def _step(
     )
 
 
-def _reopen(session: Session, project: Project, draft: MotionSetup) -> None:
-    """Show a draft again that was not applied, unless another tool is selected meanwhile."""
-    if session.project is project and session.tools.mode == "pose":
-        session.tools.select(draft)
+def _give_up(session: Session, project: Project, task: MotionJob) -> None:
+    """Show the frames as they were, and the draft, unless another tool is selected meanwhile."""
+    project.runtimes.show_again(task.frames_before)
+    is_active = task.before.id == project.selection.active
+    if session.project is project and session.tools.mode == "pose" and is_active:
+        session.tools.select(task.setup)
 
 
 def _go_on(session: Session, project: Project, task: MotionJob) -> None:
@@ -155,15 +158,15 @@ def _go_on(session: Session, project: Project, task: MotionJob) -> None:
 
 def _accept(session: Session, project: Project, task: MotionJob, giving: MotionSolve) -> None:
     """Write the motion to the layer and play it; if the layer changed meanwhile, show a notice."""
-    before, draft = task.before, task.setup
+    before = task.before
     if before not in project.document.layers:
         session.notices.show(
             _("The motion was not applied: the drawing changed meanwhile. Apply the motion again.")
         )
-        _reopen(session, project, draft)
+        _give_up(session, project, task)
         return
     gesture, command = object(), giving.command
-    change = Command(command.label, lambda document: command(_without(document, draft)))
+    change = Command(command.label, lambda document: command(_without(document, task.setup)))
     project.history.do(change, gesture=gesture)
     unkeyed = project.history.preview_pose
     if unkeyed is not None and unkeyed.layer == before.id:
@@ -241,5 +244,4 @@ def cancel_motion_job(session: Session, project: Project) -> None:
     task = project.motion_job
     if task is not None:
         pending_changes.cancel_pending_change(session, project, GIVING)
-        if task.before.id == project.selection.active:
-            _reopen(session, project, task.setup)
+        _give_up(session, project, task)
