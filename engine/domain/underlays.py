@@ -1,8 +1,9 @@
 """Underlays: material of one side of a slit that continues under the other side.
 
-A drawing shows nothing of a limb where another limb covers it. When the limbs part, the covered one
-would end at the slit. Instead it continues there, as its own mirror image across the slit, up to
-the width of the limb that covered it. The mirror image of its outline closes it.
+A drawing shows nothing of a limb or a trunk where a limb covers it. When they part, what is covered
+would end at the slit. Instead it continues there, as its own mirror image across the slit. A limb
+continues up to the width of the limb that covered it, and the mirror image of its outline closes
+it. A trunk continues below the whole limb.
 """
 
 from collections.abc import Sequence
@@ -24,11 +25,16 @@ from engine.geometry import Domain, as_xy, box_diagonal, diameter, shapely_regio
 
 BESIDE = 2.0  # slit widths: a vertex on a side of a slit is this near to its line
 SPACING, ROUNDING = 2.0, 3.0  # slit widths between samples of a line, samples of its rounding
-HIDDEN = 0.65  # of the width of a covering limb less the visible one: width of an underlay
-TAPER = 0.5  # of the distance from the ends of a slit: width of an underlay there, at most
+HIDDEN = 0.65  # of the width of a covering limb, less that of a visible limb: width of an underlay
+# What is seen is a trunk if it is this many times as wide as the covering limb: at a slit's tip,
+# where a limb leaves the trunk, and elsewhere.
+TRUNK = (0.5, 2.0)
+BAND = 8.0  # slit widths: largest width of a limb's outline and what is beside it
+BESIDE_BAND = 0.3  # of the width of a limb's underlay: what is between the slit and that band
+TAPER = 0.7  # of the distance from the ends of a slit: width of an underlay there, at most
 INK = 3.0  # slit widths: width of an underlay where it begins
 TIP = 0.1  # slit widths: a tip is this near to the domain
-STEADY = 2.0  # vertices over which widths are rounded
+STEADY = 8.0  # slit widths along the slit over which widths are rounded
 CANDIDATES = 16  # triangles that may contain a point
 
 
@@ -87,6 +93,7 @@ def find_underlay(
     outwards = np.zeros(len(mesh.vertices), dtype=np.complex128)
     along = np.zeros(len(mesh.vertices))
     limits = np.zeros(len(mesh.vertices))
+    wide = np.zeros(len(mesh.vertices))
     for line in lines:
         side, at, way, tangents = _find_side(mesh.vertices, sides, line, width)
         outwards[side] = -1j * tangents
@@ -96,6 +103,7 @@ def find_underlay(
         is_tip = shapely.distance(region, shapely.points(as_xy(line[[0, -1]]))) < TIP * width
         first, last = np.where(is_tip, 0.0, INK * width)
         limits[side] = np.minimum(first + TAPER * at, last + TAPER * (way - at))
+        wide[side] = np.interp(at / way, [0.0, 1.0], np.where(is_tip, *TRUNK))
     edges = _border_edges(mesh.triangles)
     edges = edges[(outwards[edges] != 0).all(axis=1)]
     if not len(edges):
@@ -107,22 +115,44 @@ def find_underlay(
     most = diameter(domain.outline)
     seen = _find_room(region, places - width * outwards / 2, -outwards, most)
     covering = _find_room(region, places + 2.5 * width * outwards, outwards, most)
-    depths = np.minimum(seen, HIDDEN * np.maximum(covering - seen, 0.0))
-    depths = np.minimum(_rounded(depths, edges, along), limits[found])
-    inner, weights = _locate(mesh, places - depths * outwards)
-    painted, painted_weights = _locate(mesh, places - seen * outwards)
-    first, second = found[edges].T
-    beyond, after = (edges + len(mesh.vertices)).T
-    triangles = np.concatenate(
-        [np.column_stack([first, second, after]), np.column_stack([first, after, beyond])]
+    is_trunk = seen > wide[found] * covering
+    hidden = np.where(is_trunk, 0.0, np.maximum(covering - seen, 0.0))
+    rounding = _rounding(edges, along, STEADY * width)
+    # The trunk also fills the notch between the two.
+    in_trunk = np.minimum(2.0 * rounding @ is_trunk, 1.0) * (rounding @ covering)
+    in_trunk, in_limb = (
+        np.minimum(HIDDEN * depths, np.minimum(seen, limits[found]))
+        for depths in (in_trunk, rounding @ hidden)
     )
+    band = np.minimum(BAND * width, (1.0 - BESIDE_BAND) * in_limb)
+    # Rows of further vertices: how far they lie beyond the slit, and before it what they show.
+    rows = [(in_trunk, in_trunk), (in_limb - band, seen - band), (in_limb, seen)]
+    inner, weights = _locate(mesh, np.concatenate([places - row * outwards for row, _ in rows]))
+    painted, painted_weights = _locate(
+        mesh, np.concatenate([places - row * outwards for _, row in rows])
+    )
+    at_rows = [len(mesh.vertices) + number * len(found) for number in range(len(rows))]
+    under, under_limb = (edges[(depths[edges] > 0).any(axis=1)] for depths in (in_trunk, in_limb))
+    strips = [
+        (found[under], under + at_rows[0]),
+        (found[under_limb], under_limb + at_rows[1]),
+        (under_limb + at_rows[1], under_limb + at_rows[2]),
+    ]
     return Underlay(
-        vertices=found,
+        vertices=np.tile(found, len(rows)),
         corners=inner,
         weights=weights,
         painted_corners=painted,
         painted_weights=painted_weights,
-        triangles=triangles.astype(np.int32),
+        triangles=np.concatenate([_strip(*each) for each in strips]).astype(np.int32),
+    )
+
+
+def _strip(near: Indices, far: Indices) -> Indices:
+    """Return triangles (2 b, 3) between two rows of edges (b, 2)."""
+    (first, second), (beyond, after) = near.T, far.T
+    return np.concatenate(
+        [np.column_stack([first, second, after]), np.column_stack([first, after, beyond])]
     )
 
 
@@ -167,17 +197,14 @@ def _find_room(
     return room
 
 
-def _rounded(depths: Floats, edges: Indices, along: Floats) -> Floats:
-    """Return depths that are rounded along each connected side of a slit."""
-    count = len(depths)
+def _rounding(edges: Indices, along: Floats, steady: float) -> Floats:
+    """Return the matrix (n, n) that rounds values of vertices along each connected side."""
+    count = len(along)
     graph = scipy.sparse.coo_array((np.ones(len(edges)), edges.T), shape=(count, count))
     _, parts = connected_components(graph, directed=False)
-    result = np.zeros(count)
-    for part in range(parts.max() + 1):
-        chain = np.flatnonzero(parts == part)
-        chain = chain[np.argsort(along[chain])]
-        result[chain] = ndimage.gaussian_filter1d(depths[chain], STEADY, mode="nearest")
-    return result
+    away = (along[:, None] - along) / steady
+    weights = np.exp(-(away**2) / 2) * (parts[:, None] == parts)
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
 def _locate(mesh: Mesh, points: Complexes) -> tuple[Integers, Floats]:

@@ -38,6 +38,22 @@ def test_covered_limb_continues_under_the_other_up_to_its_visible_width(domain):
     assert np.abs(further[high].real - 128).max(initial=0.0) < 10
 
 
+def test_trunk_continues_under_a_limb_as_its_mirror_image():
+    arm = 70 + 1j * np.linspace(5.0, 140.0, 60)  # of a whole body, without a gap beside the arm
+    body = np.zeros((300, 240), dtype=np.bool_)
+    body[20:280, 40:200] = True
+    domain = build_domain(body, triangles=3000, detail="normal", cut_lines=[arm])[0]
+    seam = find_closed_cuts(domain, [arm[::-1]])
+    count = len(domain.mesh.vertices)
+    used = np.unique(seam.underlay.triangles)
+    used = used[used >= count]
+    further = seam.close_cuts(domain.mesh.vertices)[used]
+    shown = seam.find_painted(domain.mesh.vertices)[used]
+    middle = (further.imag > 50) & (further.imag < 90)
+    assert 15 < (70 - further[middle].real).max() < 25
+    np.testing.assert_allclose(further.real + shown.real, 140, atol=1.5)
+
+
 def test_underlay_follows_an_affine_map_exactly_beyond_the_slit(domain):
     seam = find_closed_cuts(domain, [LINE[::-1]])
     rest = domain.mesh.vertices
