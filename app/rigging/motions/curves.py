@@ -79,3 +79,15 @@ class Leap:
     def __call__(self, phase: float) -> float:
         share = (phase % 1.0 - self.first) / (self.last - self.first)
         return self.height * 16 * (share * (1 - share)) ** 2 if 0 < share < 1 else 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmDirection:
+    """The direction of a bone of an arm on the page, however the arm is drawn.
+
+    Angles are in degrees: 0 points down, 90 points outwards, or ahead from the side, 180 points up.
+    """
+
+    angle: float
+    share: Periodic  # of the way from the drawn direction, 0 to 1
+    swing: Periodic = STEADY  # added to the direction, in degrees

@@ -3,12 +3,12 @@
 import cmath
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from app.rigging.motions.body import Body, other_side, without_side
-from app.rigging.motions.curves import STEADY, Periodic, count_swings, covering_curve
+from app.rigging.motions.curves import STEADY, ArmDirection, Periodic, count_swings, covering_curve
 from app.rigging.motions.motion import (
     FollowingJoint,
     JointPose,
@@ -16,7 +16,7 @@ from app.rigging.motions.motion import (
     MotionTemplate,
     Parameters,
 )
-from app.rigging.motions.stepping import FootSteps
+from app.rigging.motions.stepping import FootSteps, largest_steps
 from app.rigging.motions.steps import Gait, required_drop, solve_leg_ik
 from app.rigging.motions.timing import EVEN, Timing
 
@@ -29,18 +29,6 @@ TAIL_LAG = 0.25  # of a swing: the tip of a long tail is later than its first bo
 LONGER = 1.3  # ratio of the lengths of arms of which the longer one waves
 LEVEL_HEAD = 0.7  # of the trunk's lean, by which the head turns back
 SAMPLES = 96  # of a cycle, at which the lowest position of the hips is searched
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ArmDirection:
-    """The direction of a bone of an arm on the page, however the arm is drawn.
-
-    Angles are in degrees: 0 points down, 90 points outwards, or ahead from the side, 180 points up.
-    """
-
-    angle: float
-    share: Periodic  # of the way from the drawn direction, 0 to 1
-    swing: Periodic = STEADY  # added to the direction, in degrees
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,17 +89,32 @@ class _LimbInstance(MotionInstance):
         self, template: LimbMotion, body: Body, parameters: Parameters, timing: Timing
     ) -> None:
         self.template, self.body, self.parameters = template, body, parameters
-        gait = template.gait or STANDING
-        self.steps = FootSteps(body, gait, parameters, timing)
-        self.hips = next(iter(body.joints))
+        self.timing, self.hips = timing, next(iter(body.joints))
         self.is_first_side = self._prefers_first_side()
-        tall = (body.box[1] - body.box[0]).imag
-        self.reach = self.steps.reach or tall / 3
+        gait = template.gait or STANDING
+        self._step(self._fitted(gait) if gait.stance < 1 else gait)
+
+    def _step(self, gait: Gait) -> None:
+        """Take the steps of a gait, with the hips as high as the legs reach."""
+        self.steps = FootSteps(self.body, gait, self.parameters, self.timing)
+        self.reach = self.steps.reach or (self.body.box[1] - self.body.box[0]).imag / 3
         self.lowered = STEADY
         if self.steps.legs:
             # Feet are within reach of their legs at all times, so that legs keep their lengths.
             phases = np.arange(SAMPLES) / SAMPLES
             self.lowered = covering_curve([self._room(phase) for phase in phases.tolist()])
+
+    def _fitted(self, gait: Gait) -> Gait:
+        """Return a gait with the largest steps that the drawn legs can do, at size 1."""
+        asked, self.parameters = self.parameters, replace(self.parameters, size=1.0)
+
+        def turn_of(steps: Gait) -> float:
+            self._step(steps)
+            return self.steps.largest_turn(self._trunk_and_arms)
+
+        fitted = largest_steps(gait, turn_of)
+        self.parameters = asked
+        return fitted
 
     @property
     def stride(self) -> float:

@@ -1,24 +1,43 @@
 """Positions of the feet of one body over a cycle, and the height of its hips."""
 
+import cmath
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from app.rigging.motions.body import Body, other_side
 from app.rigging.motions.motion import Parameters
-from app.rigging.motions.steps import BodyLeg, Gait, find_leg, required_drop
+from app.rigging.motions.steps import BodyLeg, Gait, find_leg, required_drop, solve_leg_ik
 from app.rigging.motions.timing import EVEN, Timing
 
 GROUND = 0.3  # of a leg's length: feet drawn no higher than this above the lowest foot stand
 # Of a leg's length: the hips come down at most this much for a long step, else the step becomes
 # shorter. Without the limit the body would crouch, with all legs bent.
-LOWERED, SHORTER = 0.08, 0.9
+LOWERED, SHORTER = 0.06, 0.9
 # Lengths of a leg by which the feet of a pair of free legs may come nearer than they are drawn, and
 # farther apart; and the same for legs that are one above their crotch, in room there.
-FREE_CLOSING, FREE_OPENING = 0.6, 0.9
+FREE_CLOSING, FREE_OPENING = 0.9, 0.9
 CLOSING, OPENING = 0.03, 0.5
-SAMPLES = 48  # of a cycle
+SAMPLES, TURN_SAMPLES = 48, 24  # of a cycle
 SHORTEST = 0.1  # of a leg's length: shortest step
+
+# Radians by which a leg turns at its root from how it is drawn. Beyond, the drawing stretches there
+# to more than 2.5 times its length.
+MOST_TURN = 0.65
+
+
+def largest_steps(gait: Gait, turn_of: Callable[[Gait], float]) -> Gait:
+    """Return a gait with the largest steps that the drawn legs can do.
+
+    `turn_of` returns the largest turn of a leg at its root with the steps of a gait. Legs may turn
+    as far as they do without steps, as in a crouch.
+    """
+    most, fitted = max(MOST_TURN, turn_of(gait.smaller(0.0))), gait
+    for fitted in gait.smaller_gaits():
+        if turn_of(fitted) <= most:
+            break
+    return fitted
 
 
 class FootSteps:
@@ -72,6 +91,25 @@ class FootSteps:
         ahead = self.body.facing * gait.ahead(foot, phase, self.timing) * self.stride
         height = gait.lifted(foot, phase) * gait.lift * self.size * self.reach
         return complex(self.middles[foot] + ahead, self.ground[foot] + height)
+
+    def largest_turn(
+        self, trunk_at: Callable[[float], tuple[Mapping[str, complex], Mapping[str, float]]]
+    ) -> float:
+        """Return the largest angle by which a leg turns at its root, against its trunk, in radians.
+
+        `trunk_at` returns the places and the rotations of the trunk's joints at a phase.
+        """
+        largest, joints = 0.0, self.body.joints
+        for phase in (np.arange(TURN_SAMPLES) / TURN_SAMPLES).tolist():
+            places, turned = trunk_at(phase)
+            for foot, leg in self.legs.items():
+                root, second = leg.joints[:2]
+                tip = self.foot(foot, phase)
+                end = solve_leg_ik(leg, places[root], tip).get(second, tip)
+                turn = cmath.phase((end - places[root]) / (joints[second] - joints[root]))
+                trunk = turned.get(self.body.parents[root], 0.0)
+                largest = max(largest, abs(turn - trunk))
+        return largest
 
     def _most_lowered(self) -> float:
         """Return how much the hips come down to reach the ends of a step, in lengths of a leg."""

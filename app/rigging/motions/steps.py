@@ -2,16 +2,21 @@
 
 import cmath
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
-from app.rigging.motions.body import Body, without_side
+from app.rigging.motions.body import Body, other_side, without_side
 from app.rigging.motions.curves import bump, hermite
+from app.rigging.motions.kinds import near_side
 from app.rigging.motions.timing import SAME_PHASE, Timing
 
 # A leg drawn with at least this bend keeps its side; a straighter leg bends as usual for its kind.
 BENT = 0.21  # radians
+# Smaller steps: by this factor each time, lower down to one share before they are shorter down to
+# another.
+SMALLER, LOWEST_STEP, SMALLEST = 0.92, 0.6, 0.3
 ASIDE = 0.01  # of a leg's length: the least distance of a knee from its straight line
 
 
@@ -29,6 +34,21 @@ class Gait:
     straight: float = 0.985
     is_treadmill: bool = True  # whether, in place, feet slide back on the ground as on a treadmill
     roll: float = 0.0  # degrees by which a foot points down when it leaves the ground
+
+    def smaller(self, share: float) -> "Gait":
+        """Return the gait with a share of its steps."""
+        return replace(self, stride=share * self.stride, lift=share * self.lift)
+
+    def smaller_gaits(self) -> Iterator["Gait"]:
+        """Yield the gait with smaller and smaller steps: first they are lower, then shorter too."""
+        lift = self.lift
+        while lift > LOWEST_STEP * self.lift:
+            yield replace(self, lift=lift)
+            lift *= SMALLER
+        share = 1.0
+        while share > SMALLEST:
+            yield replace(self, lift=lift).smaller(share)
+            share *= SMALLER
 
     def stands(self, foot: str, phase: float) -> bool:
         return self._swung(foot, phase) == 0.0
@@ -77,18 +97,31 @@ class BodyLeg(NamedTuple):
 def find_leg(body: Body, tip: str, *, is_as_drawn: bool = False) -> BodyLeg:
     """Return the leg that ends at a foot, or at a hand of a body that walks on its hands.
 
-    It bends to the side on which it is drawn, if it stands as it is drawn or is clearly bent.
+    It bends to the side on which it is drawn, if it stands as it is drawn, or is clearly bent and
+    seen from the side. There both legs of a pair bend alike, as the near one is drawn: the other is
+    partly hidden. From the front, knees bend outwards.
     """
     joints = body.limb_joints(tip)
-    places = [body.joints[name] for name in joints]
-    lengths = tuple(abs(b - a) for a, b in pairwise(places))
-    turn = 0.0
-    if len(places) == 3:
-        turn = cmath.phase((places[2] - places[1]) / (places[1] - places[0]))
+    lengths = tuple(abs(body.joints[b] - body.joints[a]) for a, b in pairwise(joints))
+    turn = _drawn_turn(body, tip)
+    other = other_side(tip)
+    if body.kind.is_side_view and other in body.joints and not is_as_drawn:
+        near = tip if tip.endswith(near_side(body.facing)) else other
+        of_near, of_other = _drawn_turn(body, near), _drawn_turn(body, other_side(near))
+        turn = of_near if abs(of_near) >= BENT else (of_near + of_other) / 2
     bend = -1 if turn > 0 else 1
-    if abs(turn) < BENT and not (is_as_drawn and turn):
+    is_clear = abs(turn) >= BENT and body.kind.is_side_view
+    if not is_clear and not (is_as_drawn and turn):
         bend = _usual_bend(body, tip)
     return BodyLeg(joints, lengths, bend)
+
+
+def _drawn_turn(body: Body, tip: str) -> float:
+    """Return the angle from a leg's upper bone to its lower one as drawn, in radians."""
+    places = [body.joints[name] for name in body.limb_joints(tip)]
+    if len(places) != 3:
+        return 0.0
+    return cmath.phase((places[2] - places[1]) / (places[1] - places[0]))
 
 
 def _usual_bend(body: Body, tip: str) -> int:

@@ -56,7 +56,8 @@ class PosedLimbs:
                 if limb.parent is None
             ]
             hinges = [*limbs.hinges, *hinges]
-            armature = Armature.place(boundary, [*limbs.shafts, body], hinges, limbs.ties)
+            shafts = [*limbs.shafts, body, *limbs.widths]
+            armature = Armature.place(boundary, shafts, hinges, limbs.ties)
         return cls(limbs=limbs, start=start, armature=armature, has_body=has_body)
 
     def locate(self, shape: HarmonicMap) -> PlacedLimbs:

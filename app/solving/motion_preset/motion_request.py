@@ -23,7 +23,7 @@ from engine.arrays import Complexes
 from engine.geometry import as_xy, diameter, shapely_region
 
 SHARES = np.linspace(0.0, 1.0, 41)  # of a limb from its root
-NEAR_ROOT = 1.5  # power by which room grows as the crotch is nearer to the roots
+NEAR_ROOT = 2.0  # power by which room grows as the crotch is nearer to the roots
 BESIDE = 0.01  # of the drawing's diameter: a joint this far outside moves to the outline
 
 

@@ -24,7 +24,7 @@ FOLDED = 10.0  # −ln σ_b where a map begins to fold
 ROUND = 1e-12  # least b in a denominator
 LEAST = 1e-12  # slack
 # The first weight, its factor from step to step, the last weight, and the last width.
-FIRST, FALL, LAST, WIDTH = 1.0, 0.3, 0.01, 0.05
+FIRST, FALL, LAST, WIDTH = 1.0, 0.05, 0.01, 0.05
 # Part of the slack by which widened limits close in; and the slack, over the width, below which
 # they stay.
 TAKEN, SLIGHT = 0.9, 1e-3

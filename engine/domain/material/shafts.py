@@ -1,7 +1,8 @@
 """The rigid parts of a drawing with bones: points on the axis of each bone, and of the body.
 
 A bone's shaft lies where the drawing is a limb, narrower than the bone is long, and keeps clear of
-the joints, which bend. The body is what lies on the root's side of a cut across each limb.
+the joints, which bend. Two points beside its middle hold the limb's width. The body is what lies on
+the root's side of a cut across each limb.
 """
 
 from collections.abc import Sequence
@@ -47,6 +48,8 @@ WIDEST = 0.35
 WIDEST_JOINT = 0.7
 BEYOND_JOINT = 2.5  # half widths; one less is fully part of the joint
 SHORTEST_SHAFT = 0.15  # part of the bone's length
+# Where the width of a limb is held: so much of the way from the bone to the outline.
+WITHIN_WIDTH = 0.6
 STATIONS = 49  # places along a bone at which the drawing's width is measured
 FEWEST_STATIONS = 5
 INSET = 0.02  # part of the length without stations at each end
@@ -118,6 +121,18 @@ def shaft_points(limb: LimbShape, start: complex, end: complex, *, is_last: bool
     low = min(low, high - SHORTEST_SHAFT)
     points = start + np.linspace(low, high, POINTS) * (end - start)
     return readonly(np.asarray(points, np.complex128))
+
+
+def width_points(
+    loops: Sequence[Complexes], start: complex, end: complex, middle: complex
+) -> Complexes:
+    """Return two points in the limb, to the left and to the right of a bone at a place on it."""
+    way = (end - start) / abs(end - start)
+    share = ((middle - start) / (end - start)).real
+    left, right = measure_distances(loops, start, end, np.array([share]))[:, 0]
+    most = WIDEST * abs(end - start)
+    aside = WITHIN_WIDTH * np.array([min(left, most), -min(right, most)])
+    return readonly(np.asarray(middle + 1j * way * aside, np.complex128))
 
 
 class LimbCut(NamedTuple):

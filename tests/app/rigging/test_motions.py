@@ -18,6 +18,7 @@ from app.rigging import (
     find_motion,
     without_side,
 )
+from app.rigging.motions.stepping import MOST_TURN
 from engine.errors import EngineError
 
 USUAL = Parameters()
@@ -324,17 +325,55 @@ def test_parameters_of_parts_are_offered_where_they_change_the_motion(name, kind
 
 
 @pytest.mark.parametrize("facing", [1, -1])
-def test_straight_legs_are_bent_to_their_usual_side_and_bent_ones_stay(facing):
+def test_straight_legs_are_bent_to_their_usual_side_and_pairs_bend_alike(facing):
     rest = body("biped-side")
     root = rest.joints["hips"] - 10j
     hips = dict.fromkeys(("hip.L", "hip.R"), root)
     feet = dict.fromkeys(("foot.L", "foot.R"), root - 100j)
-    # The left knee is drawn a little backwards, the right one clearly.
-    knees = {"L": -2 * facing, "R": -30 * facing}
-    drawn = {f"knee.{side}": root - 50j + way for side, way in knees.items()}
-    of = replace(rest, joints={**rest.joints, **hips, **feet, **drawn}, facing=facing)
-    bent = bend_straight_legs(of)
-    assert bent["knee.L"] - root == pytest.approx(facing - 50j, abs=0.1)
-    assert {name: at for name, at in bent.items() if name != "knee.L"} == {
-        name: at for name, at in of.joints.items() if name != "knee.L"
-    }
+
+    def bent(left, right):
+        """Return the knees of legs that are drawn with them so far ahead."""
+        drawn = {"knee.L": root - 50j + left * facing, "knee.R": root - 50j + right * facing}
+        joints = {**rest.joints, **hips, **feet, **drawn}
+        moved = bend_straight_legs(replace(rest, joints=joints, facing=facing))
+        assert {name: at for name, at in moved.items() if "knee" not in name} == {
+            name: at for name, at in joints.items() if "knee" not in name
+        }
+        return [(moved[f"knee.{side}"] - root + 50j).real * facing for side in "LR"]
+
+    assert bent(-2, -1) == pytest.approx([1, 1], abs=0.1)
+    assert bent(-2, -30) == pytest.approx([-2, -30], abs=1e-9)
+    assert bent(2, -30) == pytest.approx([-1, -30], abs=0.1)
+
+
+def test_knees_bend_outwards_from_the_front():
+    rest = body("biped-front")
+    feet = {side: rest.joints[f"foot.{side}"] for side in "LR"}
+    inwards = {f"knee.{side}": 0.3 * at.real + 1j * (at.imag + 40) for side, at in feet.items()}
+    joints = {**rest.joints, **inwards}
+    moved = places("walk", "biped-front", np.arange(8) / 8, of=replace(rest, joints=joints))
+    for side, foot in feet.items():
+        root = moved.get(f"hip.{side}", moved["hips"])
+        bent = ((moved[f"knee.{side}"] - root) / (moved[f"foot.{side}"] - root)).imag
+        assert (bent * np.sign(foot.real - rest.joints["hips"].real) > 0).all()
+
+
+def test_steps_are_as_large_as_legs_can_turn():
+    def swing(size):
+        """Return the largest turns of upper legs, and the lengths of steps."""
+        moved = places("walk", "biped-side", np.arange(48) / 48, Parameters(size=size, energy=0))
+        turns, steps = [], []
+        for side in "LR":
+            root = f"hip.{side}" if f"hip.{side}" in rest.joints else "hips"
+            bone = rest.joints[f"knee.{side}"] - rest.joints[root]
+            turned = np.angle((moved[f"knee.{side}"] - moved[root]) / bone)
+            turns.append(np.abs(turned).max())
+            steps.append(np.ptp(moved[f"foot.{side}"].real))
+        return max(turns), max(steps)
+
+    rest = body("biped-side")
+    turn, step = swing(1.0)
+    assert turn < MOST_TURN + 0.1
+    # Whoever asks for more gets more.
+    assert swing(1.3)[1] > step
+    assert swing(0.5)[1] == pytest.approx(step / 2, rel=1e-6)

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from app.rigging.motions.curves import EIGHTHS, Curve, even_curve
-from app.rigging.motions.leg_chains import STANDING, ArmDirection, LimbMotion
+from app.rigging.motions.curves import EIGHTHS, ArmDirection, Curve, even_curve
+from app.rigging.motions.leg_chains import STANDING, LimbMotion
 from app.rigging.motions.library.four_legs import WALK_ON_FOUR
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.steps import Gait
@@ -24,7 +24,13 @@ WALK = Motion(
     templates={
         "biped-side": LimbMotion(
             gait=Gait(
-                stance=0.5, stride=1.2, lift=0.12, landings=LEFT_RIGHT, roll=30, gathered=0.7
+                stance=0.5,
+                stride=1.2,
+                lift=0.12,
+                landings=LEFT_RIGHT,
+                roll=30,
+                gathered=0.7,
+                straight=0.995,
             ),
             rise=even_curve(0.0, -0.02, 0.0, 0.02, 0.0, -0.02, 0.0, 0.02),
             turns={
@@ -40,13 +46,13 @@ WALK = Motion(
             gait=Gait(
                 stance=0.5,
                 stride=0.3,
-                lift=0.1,
+                lift=0.04,
                 landings=LEFT_RIGHT,
                 gathered=0.0,
                 is_treadmill=False,
                 straight=0.997,
             ),
-            rise=even_curve(0.0, -0.02, 0.0, 0.025, 0.0, -0.02, 0.0, 0.025),
+            rise=even_curve(0.0, -0.006, 0.0, 0.012, 0.0, -0.006, 0.0, 0.012),
             shift=even_curve(0.0, 0.06, 0.06, 0.0, -0.06, -0.06),
             turns={
                 "hips": even_curve(0, -3, -3, 0, 3, 3),

@@ -22,6 +22,7 @@ WALK_ON_FOUR = LimbMotion(
         landings=(("foot.L", 0.0), ("hand.L", 0.25), ("foot.R", 0.5), ("hand.R", 0.75)),
         gathered=0.25,
         roll=20,
+        straight=0.995,
     ),
     rise=even_curve(0.0, -0.01, 0.0, 0.01, 0.0, -0.01, 0.0, 0.01),
     turns={**_TRUNK, "chest": even_curve(0, 1, 0, -1)},

@@ -1,7 +1,7 @@
 """Motions of bodies that stand: talking, nodding, looking about, breathing and flying."""
 
-from app.rigging.motions.curves import EIGHTHS, even_curve
-from app.rigging.motions.leg_chains import STANDING, ArmDirection, LimbMotion
+from app.rigging.motions.curves import EIGHTHS, ArmDirection, even_curve
+from app.rigging.motions.leg_chains import STANDING, LimbMotion
 from app.rigging.motions.library.whole_body import BREATHE_WHOLE
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.steps import Gait

@@ -122,12 +122,11 @@ def fit_pin_corrections(
 
     def largest_share(forms: Floats, series: PiecewiseSeries, count: int) -> float:
         """Return the share of a series that keeps the limits between the solved times."""
-        return min(
-            max_feasible_share(
-                corrector, base_at(time).samples, (forms @ series(time))[:-2], limits.kept
-            )
-            for time in ((1.0 + chebyshev_nodes(count)) / 2).tolist()
-        )
+        share = 1.0
+        for time in ((1.0 + chebyshev_nodes(count)) / 2).tolist():
+            x = share * (forms @ series(time))[:-2]
+            share *= max_feasible_share(corrector, base_at(time).samples, x, limits.kept)
+        return share
 
     resolve = partial(separate_variables, values, left_out=LEFT_OUT)
     try:
