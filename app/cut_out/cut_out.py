@@ -9,6 +9,7 @@ import numpy as np
 from engine.arrays import Booleans, Bytes, Complexes, as_points, readonly, require_word
 from engine.domain.outline.enclosure import HOLES, Holes
 from engine.errors import EngineError
+from engine.geometry import arc_lengths
 
 BackgroundColour = tuple[int, int, int]  # red, green, blue, each 0 to 255
 Enclosed = Literal["auto", "keep", "remove"]
@@ -259,7 +260,7 @@ def _spacing(radius: float) -> float:
 
 def _close_together(points: Complexes, radius: float) -> Complexes:
     """Return points along the path no farther apart than the spacing of discs."""
-    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
+    along = arc_lengths(points)
     count = int(np.ceil(along[-1] / _spacing(radius))) + 1
     places = np.union1d(along, np.linspace(0, along[-1], count))
     between: Complexes = np.interp(places, along, points)

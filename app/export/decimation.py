@@ -8,11 +8,10 @@ import numpy as np
 from scipy.spatial import Delaunay
 
 from app.document import Document, Layer
-from app.render.gpu.mesh import border_edges
 from engine.arrays import Booleans, Complexes, Indices, Integers, Singles
 from engine.domain import MeshedDomain
 from engine.domain.meshing.draw_order import copy_draw_order
-from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.mesh import Mesh, border_edges
 from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import as_xy
 

@@ -14,7 +14,7 @@ from app.storage import cut_picture, decode_picture, load_project, sample_images
 from engine.arrays import Bytes, Complexes, Floats
 from engine.deform import Deformer, Handles
 from engine.domain import Domain, MeshedDomain
-from engine.geometry import edge_vectors
+from engine.geometry import arc_lengths, edge_vectors
 from engine.maps import Boundary, Bounds, HarmonicMap
 
 # The middle line of the letter S in its picture; handles are on both sides of it.
@@ -221,7 +221,7 @@ def _along(middle: Sequence[complex]) -> Complexes:
     through = np.array(middle)
     knots = np.concatenate([[0.0], np.cumsum(np.sqrt(np.abs(np.diff(through))))])
     curve = CubicSpline(knots, through)(np.linspace(0, knots[-1], 2001))
-    lengths = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(curve)))])
+    lengths = arc_lengths(curve)
     wanted = np.linspace(ENDS, 1 - ENDS, PLACES) * lengths[-1]
     places: Complexes = np.interp(wanted, lengths, curve.real) + 1j * np.interp(
         wanted, lengths, curve.imag

@@ -16,6 +16,7 @@ from engine.geometry.polygon import (
     constrained_delaunay as constrained_delaunay,
     contains as contains,
     corners_of as corners_of,
+    crossings_at as crossings_at,
     deepest_point as deepest_point,
     diameter as diameter,
     distance_to_boundary as distance_to_boundary,
@@ -34,6 +35,7 @@ from engine.geometry.polygon import (
 )
 from engine.geometry.segments import (
     Pieces as Pieces,
+    arc_lengths as arc_lengths,
     bisect_segments as bisect_segments,
     distance_to_segments as distance_to_segments,
 )

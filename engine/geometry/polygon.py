@@ -274,3 +274,14 @@ def sample_graded(
         return np.asarray(pieces.lengths <= np.minimum(ratio * distance, longest))
 
     return bisect_segments(Pieces.whole(polygon, np.roll(polygon, -1)), is_fine).starts
+
+
+def crossings_at(loops: Sequence[Complexes], height: float) -> Floats:
+    """Return where loops cross a level line, from the left."""
+    found = [np.empty(0)]
+    for loop in loops:
+        after = np.roll(loop, -1)
+        is_crossed = (loop.imag < height) != (after.imag < height)
+        a, b = loop[is_crossed], after[is_crossed]
+        found.append(a.real + (height - a.imag) / (b.imag - a.imag) * (b.real - a.real))
+    return np.sort(np.concatenate(found))

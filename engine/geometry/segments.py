@@ -95,3 +95,8 @@ def distance_to_segments(points: Complexes, starts: Complexes, ends: Complexes) 
     length2 = np.maximum(np.abs(along) ** 2, np.finfo(np.float64).tiny)
     parameter = np.clip((offset * along.conj()).real / length2, 0.0, 1.0)
     return np.asarray(np.abs(offset - parameter * along))
+
+
+def arc_lengths(line: Complexes) -> Floats:
+    """Return the length of a line through points (n,) up to each of them."""
+    return np.append(0.0, np.cumsum(np.abs(np.diff(line))))

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats
 from engine.errors import EngineError
+from engine.geometry import arc_lengths
 
 SOFTEST, STIFFEST = 1 / 30, 100.0
 # Tolerance for rounding at the ends of the range.
@@ -61,16 +62,10 @@ def stiffness_along_loops(
     logarithms = np.split(np.log(stiffness), np.cumsum([len(loop) for loop in loops[:-1]]))
     return np.concatenate(
         [
-            np.exp(np.interp(_places(its), _places(loop), values, period=_length(loop)))
+            np.exp(np.interp(arc_lengths(its), arc_lengths(loop), values, period=_length(loop)))
             for loop, its, values in zip(loops, points, logarithms, strict=True)
         ]
     )
-
-
-def _places(loop: Complexes) -> Floats:
-    """Return the arc length of each point of a loop from the first one."""
-    places: Floats = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(loop)))])
-    return places
 
 
 def _length(loop: Complexes) -> float:

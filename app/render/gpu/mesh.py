@@ -12,6 +12,7 @@ from app.render.gpu.programs import Programs, ShaderFiles, set_uniforms
 from app.texts import _
 from engine.arrays import Complexes, Integers, Singles, readonly
 from engine.domain import ClosedCuts
+from engine.domain.meshing.mesh import border_edges
 
 Attribute = tuple[moderngl.Buffer, str, str]
 """A buffer, its format, and the attribute of the shader that it feeds."""
@@ -20,15 +21,6 @@ Attribute = tuple[moderngl.Buffer, str, str]
 def to_float32_points(points: Complexes) -> Singles:
     """Return points (v,) as float32 (v, 2) for the upload."""
     return points.astype(np.complex64).view(np.float32).reshape(-1, 2)
-
-
-def border_edges(triangles: Integers) -> Integers:
-    """Return the edges (e, 2) of only one triangle, the triangle on their left."""
-    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]).astype(np.int64)
-    keys = edges.min(axis=1) << 32 | edges.max(axis=1)
-    _, first, count = np.unique(keys, return_index=True, return_counts=True)
-    border: Integers = edges[first[count == 1]].astype(np.int32)
-    return border
 
 
 class VertexSource:

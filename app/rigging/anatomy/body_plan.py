@@ -7,8 +7,8 @@ import numpy as np
 
 from app.rigging.anatomy.anatomy import Anatomy, neck_along
 from app.rigging.anatomy.legs import PlannedLeg, TrackedLeg, pair_legs, plan_leg
-from engine.arrays import Complexes, Floats, Indices
-from engine.geometry import contains
+from engine.arrays import Complexes, Indices
+from engine.geometry import contains, crossings_at
 
 # Toes point to a side if they reach this far beyond the ankle, in heights of the shape.
 TOES = 0.03
@@ -277,18 +277,9 @@ class BodyPlan:
         """Return how far a foot reaches to the right, within bounds."""
         ankle = self.places[leg.ankle]
         lowest = (self.places[leg.path].imag - self.radii[leg.path]).min()
-        crossings = _crossings(self.loops[0], (ankle.imag + lowest) / 2)
+        crossings = crossings_at(self.loops[:1], (ankle.imag + lowest) / 2)
         before, after = crossings[crossings <= ankle.real], crossings[crossings > ankle.real]
         if not (before.size and after.size):
             return 0.0
         ends = max(float(before.max()), left) + min(float(after.min()), right)
         return float(ends - 2 * ankle.real) / self.tall
-
-
-def _crossings(outline: Complexes, height: float) -> Floats:
-    """Return the crossings of an outline with a level line, from the left."""
-    start, end = outline, np.roll(outline, -1)
-    crossing = (start.imag > height) != (end.imag > height)
-    start, end = start[crossing], end[crossing]
-    share = (height - start.imag) / (end.imag - start.imag)
-    return np.sort(start.real + share * (end.real - start.real))

@@ -7,7 +7,7 @@ import numpy as np
 from app.rigging.anatomy.anatomy import joint_share
 from app.rigging.anatomy.body_plan import BodyPlan
 from engine.arrays import Complexes, Floats, Indices, as_points
-from engine.geometry import contains
+from engine.geometry import arc_lengths, contains
 
 # Length over width of a chain, and of a fish with a fin at its end.
 LONG, LONG_FISH = 3.4, 1.7
@@ -39,7 +39,7 @@ class JointPath:
     def __init__(self, plan: BodyPlan, nodes: Indices) -> None:
         self.nodes = nodes
         self.places, self.radii = plan.places[nodes], plan.radii[nodes]
-        self.lengths = np.append(0.0, np.cumsum(np.abs(np.diff(self.places))))
+        self.lengths = arc_lengths(self.places)
 
     def leaving(self, radii: float) -> int:
         """Return the index of the node at which the path leaves the disc around its first one."""
@@ -101,7 +101,7 @@ def find_arm(plan: BodyPlan, start: int, end: int, tip: int) -> tuple[complex, c
     shoulder = place + ahead * up
     places = np.append(shoulder, way.places[leaving : outer.stop + 1])
     radii = np.append(radius, way.radii[leaving : outer.stop + 1])
-    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+    lengths = arc_lengths(places)
     return shoulder, _find_bend(places, radii, lengths), hand
 
 
@@ -124,7 +124,7 @@ def suggest_chain_joints(plan: BodyPlan) -> dict[str, complex]:
         at = nodes.index(fin)
         first, last = (at, last) if at < len(nodes) / 2 else (first, at)
     places, radii = plan.places[way[first : last + 1]], plan.radii[way[first : last + 1]]
-    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+    lengths = arc_lengths(places)
     shares = np.linspace(0, 1, _count(places, radii, lengths))
     is_reversed = _ends_with_its_head(places, radii, lengths)
     if fin is not None:
@@ -151,7 +151,7 @@ def find_tail(plan: BodyPlan, start: int, end: int) -> list[complex]:
     within = np.abs(places - places[thick]) <= TAIL_BASE * radii[thick]
     first = min(int(np.flatnonzero(within)[-1]) + 1, max(last - 1, 0))
     places, radii = places[first : last + 1], radii[first : last + 1]
-    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+    lengths = arc_lengths(places)
     bones = round(float(lengths[-1]) / (TAIL_BONE * 2 * float(np.median(radii))))
     shares = np.linspace(0.0, 1.0, 1 + min(max(bones, 1), MOST_TAIL_BONES)) * lengths[-1]
     return [complex(places[np.abs(lengths - share).argmin()]) for share in shares]

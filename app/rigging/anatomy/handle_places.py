@@ -7,6 +7,7 @@ import numpy as np
 from app.rigging.anatomy.anatomy import NECK, Anatomy, joint_share
 from app.rigging.anatomy.names import Limb, SuggestedHandle, name_legs, name_limbs
 from engine.arrays import Complexes, Indices
+from engine.geometry import arc_lengths
 
 CORNERS_OF_A_RING = 4
 # The handle of a head or another round end lies this far above its middle, in radii: not in a face.
@@ -119,7 +120,7 @@ class _Body(Anatomy):
         places, radii = self.places[limb], self.radii[limb]
         if len(limb) < 3:
             return []
-        lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+        lengths = arc_lengths(places)
         slenderness = lengths[-1] / float(np.interp(lengths[-1] / 3, lengths, radii))
         if slenderness < least:
             return []

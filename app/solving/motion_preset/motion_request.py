@@ -20,7 +20,7 @@ from app.rigging import (
 from app.solving.motion_preset.rigid_points import find_rigid_points
 from app.texts import _
 from engine.arrays import Complexes
-from engine.geometry import as_xy, diameter, shapely_region
+from engine.geometry import arc_lengths, as_xy, diameter, shapely_region
 
 SHARES = np.linspace(0.0, 1.0, 41)  # of a limb from its root
 NEAR_ROOT = 2.0  # power by which room grows as the crotch is nearer to the roots
@@ -105,7 +105,7 @@ def _find_crotch_rooms(layer: Layer, body: Body) -> dict[str, float]:
 
 def _along_limb(body: Body, end: str) -> Complexes:
     places = np.array([body.joints[name] for name in body.limb_joints(end)])
-    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+    lengths = arc_lengths(places)
     return np.asarray(np.interp(SHARES * lengths[-1], lengths, places))
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from engine.arrays import Complexes
 from engine.domain import Domain
+from engine.geometry import crossings_at
 
 LEVELS = (0.05, 0.35, 0.65, 0.94)  # fractions of the height
 NARROW = 0.22  # fraction of the box's wider side: narrower parts have one point in their centre
@@ -29,15 +29,7 @@ def find_rigid_points(domain: Domain) -> dict[str, complex]:
 
 def _widest(domain: Domain, height: float) -> tuple[float, float]:
     """Return the start and the end of the widest part of a domain at a height."""
-    crossings = np.sort(np.concatenate([_crossed(loop, height) for loop in domain.loops]))
+    crossings = crossings_at(domain.loops, height)
     pairs = crossings[: len(crossings) // 2 * 2].reshape(-1, 2)
     first, last = pairs[np.diff(pairs).argmax()]
     return float(first), float(last)
-
-
-def _crossed(loop: Complexes, height: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Return the places at which a loop crosses a height."""
-    after = np.roll(loop, -1)
-    is_crossed = (loop.imag < height) != (after.imag < height)
-    a, b = loop[is_crossed], after[is_crossed]
-    return np.asarray(a.real + (height - a.imag) / (b.imag - a.imag) * (b.real - a.real))

@@ -39,6 +39,15 @@ class Mesh:
         return np.column_stack([keys >> 32, keys & 0xFFFFFFFF]).astype(np.int32)
 
 
+def border_edges(triangles: Integers) -> Integers:
+    """Return the edges (e, 2) of only one triangle, the triangle on their left."""
+    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]).astype(np.int64)
+    keys = edges.min(axis=1) << 32 | edges.max(axis=1)
+    _, first, count = np.unique(keys, return_index=True, return_counts=True)
+    border: Integers = edges[first[count == 1]].astype(np.int32)
+    return border
+
+
 def sides_of(triangles: Integers | Indices) -> tuple[Indices, Indices, Indices]:
     """Find the sides of triangles (m, 3), and the sides that two triangles share.
 

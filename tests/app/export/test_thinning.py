@@ -7,10 +7,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.export.decimation import TOLERANCE, MeshDecimator
-from app.render.gpu.mesh import border_edges
 from engine.arrays import Complexes, Floats, Integers
 from engine.domain import MeshedDomain
-from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.mesh import Mesh, border_edges
 from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import Hole
 

@@ -8,13 +8,14 @@ from drawings import Easel, grid_mesh, soft_blob
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.errors import LissomError
-from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, border_edges, to_float32_points
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, to_float32_points
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.target import RenderTarget
 from app.render.handles import HandleMark, mark_handles
 from app.render.scene import Backdrop, Disc, Ghost, Heat, Line, Scene, Wireframe
 from app.render.view import View, canvas_view, fit_view
 from engine.arrays import Complexes
+from engine.domain.meshing.mesh import border_edges
 
 WIDTH, HEIGHT = 120, 90
 VIEW = View(centre=60 + 45j, scale=1.25, size=(180, 140))

@@ -12,7 +12,7 @@ from scipy import ndimage
 
 from app.rigging.anatomy.legs import TrackedLeg
 from engine.arrays import Booleans, Bytes, Complexes, Floats
-from engine.geometry import distance_to_segments
+from engine.geometry import arc_lengths, crossings_at, distance_to_segments
 
 ROWS = 400  # of the raster: its longer side, at most twice as many
 # Largest width of a line as a share of the longer side, and its least contrast to what it parts.
@@ -142,7 +142,7 @@ def _leg(track: _Track, root: float) -> tuple[complex, complex, complex]:
     beyond = root - track.rows[-1]
     if beyond > 0:
         way = np.append(way[0] + 1j * beyond, way)
-    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(way))))
+    lengths = arc_lengths(way)
     if _distance_from_bones(way, (0, -1)) < BENT * lengths[-1]:
         knee = int(np.abs(lengths - lengths[-1] / 2).argmin())
     else:
@@ -167,8 +167,7 @@ def _rasterize(
     columns = (np.arange(wide) + 0.5) * factor + corner.real
     for row in range(high):
         y = (row + 0.5) * factor + corner.imag
-        crossings = np.sort(np.concatenate([_crossings(loop, y) for loop in loops]))
-        inside[row] = np.searchsorted(crossings, columns) % 2 == 1
+        inside[row] = np.searchsorted(crossings_at(loops, y), columns) % 2 == 1
     lower = rgba.shape[0] - high * factor
     cut = rgba[lower:, : wide * factor].reshape(high, factor, wide, factor, 4)
     means = cut.mean(axis=(1, 3))[::-1]
@@ -190,13 +189,6 @@ def _mark_changes(inside: Booleans, colours: Floats) -> Booleans:
     change = [ndimage.gaussian_gradient_magnitude(colours[..., k], SOFT) for k in range(3)]
     is_change: Booleans = inside & (np.max(change, axis=0) > SHARP)
     return is_change
-
-
-def _crossings(loop: Complexes, height: float) -> Floats:
-    after = np.roll(loop, -1)
-    is_crossed = (loop.imag < height) != (after.imag < height)
-    a, b = loop[is_crossed], after[is_crossed]
-    return np.asarray(a.real + (height - a.imag) / (b.imag - a.imag) * (b.real - a.real))
 
 
 def _follow_runs(parts: Booleans) -> list[_Track]:

@@ -8,7 +8,7 @@ import shapely
 from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes, Complexes, Floats, Indices
-from engine.geometry import shapely_region
+from engine.geometry import arc_lengths, shapely_region
 
 FINEST = 800  # samples of the picture's longer side
 # Shares of the limb's length: rounding of its axis at the knee, its parts sampled beyond its end
@@ -94,7 +94,7 @@ def _leans_right(axis: Complexes, across: Complexes, far: Complexes) -> bool:
 
 
 def resample_line(way: Complexes, step: float) -> Complexes:
-    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(way))))
+    lengths = arc_lengths(way)
     at = np.linspace(0.0, lengths[-1], max(2, round(lengths[-1] / step) + 1))
     return np.asarray(np.interp(at, lengths, way))
 

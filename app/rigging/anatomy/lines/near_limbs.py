@@ -8,7 +8,7 @@ import numpy as np
 from app.rigging.motions.body import other_side, without_side
 from app.rigging.motions.kinds import near_side
 from engine.arrays import Bytes, Complexes, Floats
-from engine.geometry import distance_to_boundary
+from engine.geometry import arc_lengths, distance_to_boundary
 
 LIMBS = (("hip", "knee", "foot"), ("shoulder", "elbow", "hand"))
 SAMPLES = 40  # along a limb
@@ -86,7 +86,7 @@ class _Limb:
         self, loops: Sequence[Complexes], way: Sequence[complex], rgba: Bytes, corner: complex
     ) -> None:
         places = np.array(way)
-        lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+        lengths = arc_lengths(places)
         shares = np.linspace(0.0, 1.0, SAMPLES)
         at = np.interp(shares * lengths[-1], lengths, places.real) + 1j * np.interp(
             shares * lengths[-1], lengths, places.imag
