@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Final
+from typing import Any, Final
 
 import moderngl
 import numpy as np
@@ -81,7 +81,7 @@ class GpuPicture:
         first, last = np.flatnonzero(changed)[[0, -1]]
         rows = max(1, _BLOCK // width)
         for top in range(first, last + 1, rows):
-            block = self._products[_index(straight[top : min(top + rows, last + 1)])][::-1]
+            block = _multiplied(straight[top : min(top + rows, last + 1)], self._products)[::-1]
             bottom = height - top - len(block)
             self._texture.write(block.tobytes(), viewport=(0, int(bottom), width, len(block)))
         self._texture.build_mipmaps()
@@ -106,8 +106,20 @@ class GpuPicture:
         self._texture.release()
 
 
+def _multiplied(straight: Bytes, products: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Return pixels (h, w, 4) with their colours times alpha, from a table of products."""
+    if products is not _BYTES:
+        return np.asarray(products[_index(straight)])
+    # In bytes, opaque pixels stay as they are. Few pixels are half transparent.
+    alpha = straight[..., 3]
+    result = straight * (alpha > 0)[..., None]
+    is_soft = (alpha > 0) & (alpha < 255)
+    result[is_soft] = products[_index(straight[is_soft])]
+    return result
+
+
 def _index(straight: Bytes) -> npt.NDArray[np.uint16]:
-    """Return the indices of pixels (h, w, 4) in the tables of products."""
+    """Return the indices of pixels (…, 4) in the tables of products."""
     index = straight.astype(np.uint16)
     index[..., :3] += straight[..., 3:].astype(np.uint16) << 8
     index[..., 3] += 255 << 8

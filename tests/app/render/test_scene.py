@@ -302,3 +302,14 @@ def test_what_cannot_be_drawn_is_refused(easel):
     with pytest.raises(ValueError, match="cannot fill a frame"):
         easel.renderer.draw(target, VIEW, Scene())
     target.release()
+
+
+def test_pictures_for_the_screen_have_colours_times_alpha(gl):
+    straight = np.random.default_rng(0).integers(0, 256, (40, 60, 4)).astype(np.uint8)
+    straight[:10, :, 3], straight[10:20, :, 3] = 0, 255
+    picture = GpuPicture(gl, straight, is_for_screen=True)
+    shown = np.frombuffer(picture._texture.read(), np.uint8).reshape(straight.shape)[::-1]
+    alpha = straight[..., 3:] / 255
+    expected = np.dstack([np.rint(straight[..., :3] * alpha), straight[..., 3]])
+    assert_array_equal(shown, expected)
+    picture.release()
