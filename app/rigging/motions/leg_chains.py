@@ -27,6 +27,7 @@ STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, landings=FEET, gathered=0.0, s
 TAIL_SWING, LEADING_SWING = 2.2, 0.9
 TAIL_LAG = 0.25  # of a swing: the tip of a long tail is later than its first bone
 LONGER = 1.3  # ratio of the lengths of arms of which the longer one waves
+NECKLESS = 0.5  # share of the turn that a head without a neck keeps: it bends the whole trunk
 LEVEL_HEAD = 0.7  # of the trunk's lean, by which the head turns back
 SAMPLES = 96  # of a cycle, at which the lowest position of the hips is searched
 
@@ -198,15 +199,13 @@ class _LimbInstance(MotionInstance):
             return self._tail_turn(name, phase)
         template, kept = self.template, without_side(name)
         has_side = kept != name
-        late = template.lag if name.endswith(".R") else 0.0
-        curve = template.turns.get(kept)
-        if curve is None and self.body.kind.name != "biped-front":
-            curve = template.leans.get(kept)
+        late = (template.lag if name.endswith(".R") else 0.0) + self._delay(kept)
+        curve = self._curve(kept)
         if curve is None:
             return self._lean(kept)
-        late += self._delay(kept)
         way = self._outwards(name) if has_side else self.body.facing
         amount = self.parameters.size * (1.0 if has_side else self.parameters.energy)
+        amount *= NECKLESS if name == "head" and "neck" not in self.body.joints else 1.0
         return way * amount * math.radians(curve(phase - late)) + self._lean(kept)
 
     def _grown(self, name: str, phase: float) -> float:
@@ -267,7 +266,7 @@ class _LimbInstance(MotionInstance):
     @property
     def following(self) -> tuple[FollowingJoint, ...]:
         """The joints of a tail beyond its first bone, each later than the one before it."""
-        curve, joints = self._tail_curve, self.body.tail
+        curve, joints = self._curve("tail"), self.body.tail
         if curve is None or len(joints) < 3:
             return ()
         swings, bones = count_swings(curve), len(joints) - 1
@@ -276,16 +275,13 @@ class _LimbInstance(MotionInstance):
             for number, joint in enumerate(joints[2:], 1)
         )
 
-    @property
-    def _tail_curve(self) -> Periodic | None:
-        curve = self.template.turns.get("tail")
-        if curve is None and self.body.kind.name != "biped-front":
-            curve = self.template.leans.get("tail")
-        return curve
+    def _curve(self, joint: str) -> Periodic | None:
+        leans = {} if self.body.kind.name == "biped-front" else self.template.leans
+        return self.template.turns.get(joint, leans.get(joint))
 
     def _tail_turn(self, name: str, phase: float) -> float:
         """Return the rotation of a bone of the tail: only the first swings, about its base."""
-        curve, joints, of = self._tail_curve, self.body.tail, self.parameters
+        curve, joints, of = self._curve("tail"), self.body.tail, self.parameters
         if curve is None or name != joints[1]:
             return 0.0
         share = TAIL_SWING if len(joints) == 2 else LEADING_SWING

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from app.document import AppliedMotion, Layer, Pose, Spring, Target, rest_pose
+from app.document import AppliedMotion, Layer, Pose, Spring, Target, find_chains, rest_pose
 from app.rigging import Body, Performance, Timing
 from app.solving.drag.rig import Rig
 from app.solving.motion_preset.motion_request import MotionRequest
@@ -98,10 +98,17 @@ def find_key_poses(
 def with_joint_weights(layer: Layer, joints: frozenset[int], feet: frozenset[int]) -> Layer:
     """Return a layer whose poses only the joints hold, standing feet with the largest weight.
 
-    Other handles follow the body like sprung handles.
+    Other handles follow the body like sprung handles. Joints of the body are locked, so that a root
+    with a target of its own, as a neck that nods, does not carry the body along.
     """
+    on_limbs = {each for chain in find_chains(layer.bones) for each in chain.handles[1:]}
     handles = tuple(
-        replace(each, weight=FIRM) if each.id in feet else each for each in layer.handles
+        replace(
+            each,
+            weight=FIRM if each.id in feet else each.weight,
+            locked=each.locked or each.id in joints - on_limbs,
+        )
+        for each in layer.handles
     )
     others = [each.id for each in layer.handles if each.id not in joints]
     loose = [each for each in others if layer.spring_of(each) is None]

@@ -26,7 +26,7 @@ CLEAR = 0.6
 # A part that reaches less far from the end, in half widths of the neck, is none: a tail's tip. One
 # that reaches farther than this many lengths of the bone is none: the rest of a tail. One that is
 # wider than its neck may reach farther: a head.
-LEAST_REACH, MOST_REACH = 1.05, 0.95
+LEAST_REACH, MOST_REACH = 1.05, 1.3
 MOST_WIDE_REACH, WIDE = 2.0, 1.5
 SPACING = 0.25  # of the outline's points, in half widths of the neck
 

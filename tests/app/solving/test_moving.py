@@ -132,6 +132,23 @@ def test_feet_that_stand_stay_while_knees_bend_when_a_walk_travels(scenes):
     assert_allclose([pose.targets[foot].position for pose in giving.poses], wanted, atol=1e-9)
 
 
+def test_a_nodding_neck_does_not_carry_the_body_along(scenes):
+    joints = dict(JOINTS["biped-side"])
+    joints["neck"] = joints["chest"] + 0.3 * (joints["head"] - joints["chest"])
+    order = MotionRequest(motion="nod", kind="biped-front", joints=joints)
+    solve = start_motion_solve(scenes["biped-side"], scenes["biped-side"].layers[0].id, order)
+    while not solve.is_solved:
+        solve = step_motion_solve(solve)
+    hips, neck = (solve.applied.joints[name] for name in ("hips", "neck"))
+    planned = [moment.targets for moment in solve.key_poses]
+    assert np.ptp([targets[neck].position.imag for targets in planned]) > 3
+    assert_allclose(
+        [pose.targets[hips].position for pose in solve.poses],
+        [targets[hips].position for targets in planned],
+        atol=0.8,
+    )
+
+
 def test_edits_by_hand_stay_when_a_motion_is_applied_with_other_settings(wagging):
     layer = wagging.layers[0]
     (motion,) = layer.motions

@@ -83,6 +83,11 @@ def test_a_hoof_is_a_rigid_end_and_a_round_tip_is_none():
         assert (find_end_part([loop], 120j, 20j) is not None) == is_rigid
 
 
+def test_a_foot_of_a_short_thick_leg_is_a_rigid_end():
+    leg = np.array([-45, 45, 45 + 260j, -45 + 260j]) + 0j
+    assert find_end_part([leg], 167j, 83j) is not None
+
+
 def test_a_planted_sole_neither_rolls_nor_slides():
     document, layer = posed({"frame": 0}, HIPS_DOWN)
     assert placed(layer).angles == pytest.approx({3: 0.0}, abs=1e-3)

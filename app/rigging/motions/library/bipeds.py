@@ -140,6 +140,7 @@ WAVE = Motion(
         kind: LimbMotion(
             turns={"head": even_curve(0, 1, 3, 4, 4, 4, 3, 1)},
             aims={"elbow.R": _UPPER, "hand.R": _FOREARM},
+            gait=STANDING,
             needed=("hips",),
             either=("hand.R", "hand.L"),
         )
@@ -184,15 +185,16 @@ def _leap(*values: float) -> Curve:
     return Curve(tuple(zip(_LEAP_PHASES, values, strict=True)))
 
 
+_LEAP_GAIT = Gait(
+    stance=0.62,
+    stride=0.0,
+    lift=0.26,
+    landings=(("foot.L", 0.72), ("foot.R", 0.72)),
+    gathered=0.0,
+    roll=16,
+)
 _LEAP = LimbMotion(
-    gait=Gait(
-        stance=0.62,
-        stride=0.0,
-        lift=0.26,
-        landings=(("foot.L", 0.72), ("foot.R", 0.72)),
-        gathered=0.0,
-        roll=16,
-    ),
+    gait=_LEAP_GAIT,
     lag=0.0,
     rise=_leap(0, -0.15, 0.0, 0.24, 0.34, 0.24, 0.0, -0.13),
     leans={
@@ -207,10 +209,12 @@ _LEAP = LimbMotion(
     },
     needed=LEAPERS,
 )
-# From the front arms rise outwards; they do not swing back through the trunk.
+# From the front arms rise outwards; they do not swing back through the trunk. Knees would point
+# outwards like a frog's: the body sinks less, and feet rise with it.
 _LEAP_FRONTAL = replace(
     _LEAP,
-    rise=_leap(0, -0.11, 0.0, 0.24, 0.34, 0.24, 0.0, -0.1),
+    gait=replace(_LEAP_GAIT, lift=0.34),
+    rise=_leap(0, -0.06, 0.0, 0.13, 0.34, 0.13, 0.0, -0.05),
     turns={
         "head": _leap(0, 1, 0, -1, -1, 0, 1, 1),
         "elbow": _leap(0, 4, 22, 38, 44, 42, 32, 8),
@@ -263,7 +267,7 @@ LEAPING = LimbMotion(
 LEAPING_FRONTAL = replace(
     LEAPING,
     gait=replace(_BOTH_FEET, stride=0.0),
-    rise=_hop(-0.1, -0.06, 0.02, 0.15, 0.2, 0.15, 0.02, -0.06),
+    rise=_hop(-0.05, -0.03, 0.0, 0.09, 0.2, 0.09, 0.0, -0.03),
     turns={
         "head": _hop(1, 1, 0, -1, -1, -1, 0, 1),
         "elbow": _hop(2, 6, 16, 26, 30, 28, 20, 8),
