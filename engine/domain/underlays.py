@@ -19,7 +19,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from engine.arrays import Complexes, Floats, Indices, Integers
-from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.mesh import Mesh, border_edges
 from engine.domain.outline.slit_sides import CUT_WIDTH
 from engine.geometry import Domain, as_xy, box_diagonal, diameter, shapely_region
 
@@ -104,7 +104,7 @@ def find_underlay(
         first, last = np.where(is_tip, 0.0, INK * width)
         limits[side] = np.minimum(first + TAPER * at, last + TAPER * (way - at))
         wide[side] = np.interp(at / way, [0.0, 1.0], np.where(is_tip, *TRUNK))
-    edges = _border_edges(mesh.triangles)
+    edges = border_edges(mesh.triangles).astype(np.intp)
     edges = edges[(outwards[edges] != 0).all(axis=1)]
     if not len(edges):
         return None
@@ -171,15 +171,6 @@ def _find_side(
     is_covered = (away.real > 0) & (np.abs(away) < BESIDE * width)
     chosen = nearest[is_covered]
     return sides[is_covered], at[chosen], float(lengths[-1]), tangents[chosen]
-
-
-def _border_edges(triangles: Integers) -> Indices:
-    """Return the edges (b, 2) of only one triangle."""
-    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]).astype(np.int64)
-    keys = edges.min(axis=1) << 32 | edges.max(axis=1)
-    _, first, count = np.unique(keys, return_index=True, return_counts=True)
-    border: Indices = edges[first[count == 1]]
-    return border
 
 
 def _find_room(
