@@ -213,8 +213,13 @@ _LEAP = LimbMotion(
 # outwards like a frog's: the body sinks less, and feet rise with it.
 _LEAP_FRONTAL = replace(
     _LEAP,
-    gait=replace(_LEAP_GAIT, lift=0.34),
-    rise=_leap(0, -0.06, 0.0, 0.13, 0.34, 0.13, 0.0, -0.05),
+    gait=replace(_LEAP_GAIT, lift=0.34, straight=0.997),
+    rise=Curve(
+        (
+            *((0.0, 0.0), (0.2, -0.06), (0.3, -0.03), (0.34, -0.005), (0.38, 0.018), (0.43, 0.13)),
+            *((0.53, 0.34), (0.63, 0.13), (0.68, 0.018), (0.72, -0.005), (0.84, -0.05)),
+        )
+    ),
     turns={
         "head": _leap(0, 1, 0, -1, -1, 0, 1, 1),
         "elbow": _leap(0, 4, 22, 38, 44, 42, 32, 8),
@@ -266,8 +271,13 @@ LEAPING = LimbMotion(
 # From the front it hops in place.
 LEAPING_FRONTAL = replace(
     LEAPING,
-    gait=replace(_BOTH_FEET, stride=0.0),
-    rise=_hop(-0.05, -0.03, 0.0, 0.09, 0.2, 0.09, 0.0, -0.03),
+    gait=replace(_BOTH_FEET, stride=0.0, straight=0.997),
+    rise=Curve(
+        (
+            *((0.0, -0.05), (0.14, -0.03), (0.28, -0.005), (0.33, 0.012), (0.4, 0.09)),
+            *((0.52, 0.21), (0.64, 0.09), (0.71, 0.012), (0.76, -0.005), (0.86, -0.03)),
+        )
+    ),
     turns={
         "head": _hop(1, 1, 0, -1, -1, -1, 0, 1),
         "elbow": _hop(2, 6, 16, 26, 30, 28, 20, 8),
