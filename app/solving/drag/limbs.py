@@ -10,6 +10,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from math import inf
 
+import numpy as np
+
 from app.document import Limbs, PlacedLimbs
 from engine.deform import Aim, Armature, Hinge, Shaft
 from engine.maps import Boundary, HarmonicMap
@@ -46,10 +48,9 @@ class PosedLimbs:
         armature = limbs.armature_in(boundary)
         start = _locate(limbs, armature, shape)
         if has_body:
-            body, number = (
-                Shaft(limbs.body, shape(limbs.body), BODY_STIFFNESS),
-                len(limbs.shafts),
-            )
+            points, number = np.concatenate([limbs.body, limbs.beside_roots]), len(limbs.shafts)
+            weights = np.concatenate([np.ones(len(limbs.body)), limbs.shares_beside])
+            body = Shaft(points, shape(points), BODY_STIFFNESS, weights)
             hinges = [
                 Hinge(number, limb.first_shaft, start.places[limb.chain.root], limb.places[0])
                 for limb in limbs.limbs

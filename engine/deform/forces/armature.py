@@ -95,7 +95,7 @@ class Armature:
         """Return the constant part (u, u) of the shafts' Hessian, that of κ Σ |f̂|²."""
         own, _ = self.split(self.basis_coordinates)
         rows = own - self.shafts.means(own)[self.shafts.owners]
-        factors = np.sqrt(2.0 * self.shafts.stiffness[self.shafts.owners])
+        factors = np.sqrt(2.0 * self.shafts.point_stiffness)
         return position_gram_matrix(boundary, factors[:, None] * rows)
 
     def motions(self, positions: Complexes) -> Motions:

@@ -26,11 +26,14 @@ class Shaft(NamedTuple):
         The shape that is kept: the points themselves, or where they are in an earlier pose.
     stiffness : float
         κ L².
+    weights : float or float64, shape (m,)
+        Shares of κ.
     """
 
     points: Complexes
     rest: Complexes
     stiffness: float = SHAFT_STIFFNESS
+    weights: Floats | float = 1.0
 
 
 class Hinge(NamedTuple):

@@ -55,7 +55,7 @@ class PosedArmature:
         """Return the product (t,) of the projected Hessian with changes of the points."""
         shafts = self.armature.shafts
         own, others = self.armature.split(changes)
-        product = 2.0 * shafts.stiffness[shafts.owners] * (own - shafts.means(own)[shafts.owners])
+        product = 2.0 * shafts.point_stiffness * (own - shafts.means(own)[shafts.owners])
         for weights, sign in zip(self._weights, (1.0, -1.0), strict=True):
             # Re Σ conj(w) d is the plain product of the real and imaginary parts.
             along = weights.view(np.float64) @ own.view(np.float64)

@@ -2,15 +2,18 @@
 
 The energy of a shaft with points p is the misfit of the best rigid motion R(z) = c + u z, |u| = 1,
 
-    κ min Σ |f(p_i) − R(p_i)|² = κ (Σ |f̂_i|² + S − 2 |q|),  q = Σ conj(p̂_i) f̂_i,  S = Σ |p̂_i|²,
+    κ min Σ w_i |f(p_i) − R(p_i)|² = κ (Σ w_i |f̂_i|² + S − 2 |q|),
 
-with p̂ and f̂ less their means; u = q / |q|. It names no place: its forces have no resultant and no
-moment. The gradient at point i is 2 κ (f̂_i − u p̂_i). The Hessian is the constant one of κ Σ |f̂|²
-less 2 κ S / |q| n nᵀ, n = i u p̂ / √S; with min(1/|q|, 1/S) it is positive, the exact projection.
+    q = Σ w_i conj(p̂_i) f̂_i,  S = Σ w_i |p̂_i|²,
+
+with p̂ and f̂ less their weighted means; u = q / |q|. It names no place: its forces have no resultant
+and no moment. The gradient at point i is 2 κ w_i (f̂_i − u p̂_i). The Hessian is the constant one of
+κ Σ w |f̂|² less 2 κ S / |q| n nᵀ, n = i u w p̂ / √S; with min(1/|q|, 1/S) it is positive, the exact
+projection.
 
 R also moves places that are no point of the shaft, such as a joint. To first order
 
-    dR(z) = mean d + i u (z − mean p) Im(conj(u) Σ conj(p̂_i) d_i) / |q|.
+    dR(z) = mean d + i u (z − mean p) Im(conj(u) Σ w_i conj(p̂_i) d_i) / |q|.
 """
 
 from collections.abc import Sequence
@@ -37,10 +40,12 @@ class RigidShafts:
         The number of each point's shaft.
     starts : intp, shape (s,)
         The number of each shaft's first point.
-    offsets : complex128, shape (t,)
-        p̂ of each point.
-    stiffness, squares, counts : float64, shape (s,)
-        κ, S and the number of points of each shaft.
+    offsets, levers : complex128, shape (t,)
+        p̂ and w p̂ of each point.
+    weights : float64, shape (t,)
+        w of each point.
+    stiffness, squares, totals : float64, shape (s,)
+        κ, S and Σ w of each shaft.
     centres : complex128, shape (s,)
         Mean of the rest of each shaft.
     """
@@ -49,9 +54,11 @@ class RigidShafts:
     owners: Indices
     starts: Indices
     offsets: Complexes
+    levers: Complexes
+    weights: Floats
     stiffness: Floats
     squares: Floats
-    counts: Floats
+    totals: Floats
     centres: Complexes
 
     @classmethod
@@ -59,29 +66,42 @@ class RigidShafts:
         """Place shafts on a shape of size L."""
         counts = np.array([len(shaft.points) for shaft in shafts])
         owners = np.repeat(np.arange(len(shafts), dtype=np.intp), counts)
-        centres = np.array([shaft.rest.mean() for shaft in shafts], np.complex128)
-        offsets = np.concatenate([shaft.rest for shaft in shafts]) - centres[owners]
+        shares = [np.broadcast_to(shaft.weights, len(shaft.points)) for shaft in shafts]
+        totals = np.array([each.sum() for each in shares], np.float64)
+        weights = np.concatenate(shares).astype(np.float64)
+        rest = np.concatenate([shaft.rest for shaft in shafts]).astype(np.complex128)
+        starts = np.cumsum(counts) - counts
+        centres = np.add.reduceat(weights * rest, starts) / totals
+        offsets = rest - centres[owners]
         points = np.concatenate([shaft.points for shaft in shafts]).astype(np.complex128)
         return cls(
             points=readonly(points),
             owners=readonly(owners),
-            starts=readonly(np.cumsum(counts) - counts),
+            starts=readonly(starts),
             offsets=readonly(offsets),
+            levers=readonly(weights * offsets),
+            weights=readonly(weights),
             stiffness=readonly(np.array([s.stiffness for s in shafts]) / size**2),
-            squares=readonly(np.asarray(np.bincount(owners, np.abs(offsets) ** 2), np.float64)),
-            counts=readonly(counts.astype(np.float64)),
-            centres=readonly(centres),
+            squares=readonly(np.add.reduceat(weights * np.abs(offsets) ** 2, starts)),
+            totals=readonly(totals),
+            centres=readonly(centres.astype(np.complex128)),
         )
 
     def softened(self, factor: float) -> Self:
         """Return the same shafts with `factor` times the stiffness."""
         return replace(self, stiffness=readonly(factor * self.stiffness))
 
+    @property
+    def point_stiffness(self) -> Floats:
+        """κ w of each point, float64 (t,)."""
+        stiffness: Floats = self.stiffness[self.owners] * self.weights
+        return stiffness
+
     def motions(self, positions: Complexes) -> Motions:
         """Return the best rigid motions with the points (t,) at these positions."""
         means = self.means(positions)
         offsets = positions - means[self.owners]
-        correlations = self._sums(self.offsets.conj() * offsets)
+        correlations = self._sums(self.levers.conj() * offsets)
         turns = correlations / np.maximum(np.abs(correlations), TINY)
         return Motions(offsets, means, correlations, turns)
 
@@ -103,14 +123,14 @@ class RigidShafts:
 
     def energy(self, motions: Motions) -> float:
         """Return the energy of the shafts."""
-        misfit = self._sums(np.abs(motions.offsets) ** 2).real + self.squares
+        misfit = self._sums(self.weights * np.abs(motions.offsets) ** 2).real + self.squares
         misfit -= 2.0 * np.abs(motions.correlations)
         return float(self.stiffness @ misfit)
 
     def gradient(self, motions: Motions) -> Complexes:
         """Return the gradient of the energy at the points (t,)."""
         misfits = motions.offsets - motions.turns[self.owners] * self.offsets
-        gradient: Complexes = 2.0 * self.stiffness[self.owners] * misfits
+        gradient: Complexes = 2.0 * self.point_stiffness * misfits
         return gradient
 
     def removed_weights(self, motions: Motions) -> Complexes:
@@ -118,7 +138,7 @@ class RigidShafts:
         inverse = np.minimum(1.0 / np.maximum(np.abs(motions.correlations), TINY), 1 / self.squares)
         factors = np.sqrt(2.0 * self.stiffness * inverse) * 1j * motions.turns
         removed: Complexes = self._is_of(np.arange(len(factors), dtype=np.intp)) * (
-            factors[self.owners] * self.offsets
+            factors[self.owners] * self.levers
         )
         return removed
 
@@ -132,17 +152,19 @@ class RigidShafts:
         """Return the weights (2, a, t) of changes in the real and imaginary parts of dR(z)."""
         arms = 1j * motions.turns[shafts] * (places - are_places * self.centres[shafts])
         arms /= np.maximum(np.abs(motions.correlations[shafts]), TINY)
-        turned = 1j * motions.turns[self.owners] * self.offsets
-        is_own, means = self._is_of(shafts), are_places[:, None] / self.counts[self.owners]
+        turned = 1j * motions.turns[self.owners] * self.levers
+        is_own = self._is_of(shafts)
+        means = are_places[:, None] * (self.weights / self.totals[self.owners])
         parts = np.empty((2, *is_own.shape), np.complex128)
         for part, unit, arm in zip(parts, (1.0, 1j), (arms.real, arms.imag), strict=True):
             part[:] = is_own * (unit * means + arm[:, None] * turned)
         return parts
 
     def means(self, values: Complexes) -> Complexes:
-        """Return the means (s, …) of values of the points (t, …) of each shaft."""
-        sums = self._sums(values)
-        means: Complexes = sums / self.counts.reshape(-1, *(1,) * (sums.ndim - 1))
+        """Return the weighted means (s, …) of values of the points (t, …) of each shaft."""
+        others = (1,) * (values.ndim - 1)
+        sums = self._sums(self.weights.reshape(-1, *others) * values)
+        means: Complexes = sums / self.totals.reshape(-1, *others)
         return means
 
     def _is_of(self, shafts: Indices) -> Floats:

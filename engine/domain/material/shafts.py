@@ -30,10 +30,14 @@ from engine.geometry import (
 POINTS = 5  # on the axis of a bone
 BODY_POINTS = 200
 LATTICE = 64  # places along the longer side among which the body's anchor is chosen
-# Near a root the body bends with the limb: its points keep away by this many half widths of the
-# joint, but never more than this part of them is left out. Measured on stubs: with all points a
+# Near a root the body bends with the limb: its points are firm from this many half widths of the
+# joint on, but never more than this part of them is not. Measured on stubs: with all points firm a
 # bend of 100° moved parts of the body by 8 to 24 thousandths, and with these by 1 to 8.
-BESIDE_ROOT, MOST_LEFT_OUT = 3.0, 0.35
+BESIDE_ROOT, MOST_BESIDE = 3.0, 0.35
+# Largest share beside a root; nearer it falls with the square of the distance. Measured on 12
+# limbs: without it places two half widths from a root moved by 17 to 119 thousandths, such as
+# heads beside shoulders, and with it by 2 to 29. Twice as much holds trunks back that should bend.
+BESIDE_SHARE = 0.05
 # A shaft keeps clear of a joint by this many half widths, and by at most this part of the bone.
 CLEAR, MOST_CLEAR = 0.9, 0.4
 # The drawing is a limb where it is narrower than this part of the bone's length.
@@ -144,20 +148,36 @@ class LimbCut(NamedTuple):
     shape: LimbShape
 
 
+class BodyPoints(NamedTuple):
+    """Points of the outline (≤ `BODY_POINTS` each) that belong to no limb, far from each other.
+
+    Those `beside` the roots of limbs give way where a limb bends at its root: they have shares
+    below 1 of the others' firmness.
+    """
+
+    firm: Complexes
+    beside: Complexes
+    shares: Floats
+
+
 def body_points(
     loops: Sequence[Complexes], candidates: Complexes, limbs: Sequence[LimbCut]
-) -> Complexes:
-    """Return points of the outline (≤ `BODY_POINTS`) that belong to no limb, far from each other.
-
-    Points beside roots are left out. `candidates` are points on the outline; `limbs` are as in
-    `is_in_body`.
-    """
+) -> BodyPoints:
+    """Return points of the body among candidates on the outline; `limbs` as in `is_in_body`."""
     left = candidates[is_in_body(loops, candidates, limbs)]
+    shares = np.ones(len(left))
     if len(left) and limbs:
         from_roots = [np.abs(left - limb.root) / limb.shape.joint_width for limb in limbs]
         away = np.min(from_roots, axis=0)
-        left = left[away >= min(BESIDE_ROOT, float(np.quantile(away, MOST_LEFT_OUT)))]
-    return readonly(left[spread_points(left, BODY_POINTS)])
+        firm_from = min(BESIDE_ROOT, float(np.quantile(away, MOST_BESIDE)))
+        shares = np.where(away < firm_from, BESIDE_SHARE * (away / firm_from) ** 2, 1.0)
+    firm, beside = left[shares >= 1.0], np.flatnonzero(shares < 1.0)
+    beside = beside[spread_points(left[beside], BODY_POINTS)]
+    return BodyPoints(
+        firm=readonly(firm[spread_points(firm, BODY_POINTS)]),
+        beside=readonly(left[beside]),
+        shares=readonly(shares[beside]),
+    )
 
 
 def body_anchor(loops: Sequence[Complexes], limbs: Sequence[LimbCut]) -> complex | None:

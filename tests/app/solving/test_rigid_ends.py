@@ -118,7 +118,7 @@ def test_a_dragged_foot_turns_with_its_shin_unless_it_has_an_angle():
 
 def test_a_foot_with_angles_turns_evenly_as_a_rigid_part():
     first = {"frame": 0, "targets": {"foot": [230, 90]}, "angle": {"foot": -20}}
-    second = {"frame": 12, "targets": {"foot": [250, 120]}, "angle": {"foot": 25}}
+    second = {"frame": 12, "targets": {"foot": [250, 112]}, "angle": {"foot": 25}}
     document, _ = posed(first, second)
     angles, misfit = turns(SOLE, frames(document, SOLE, np.linspace(0, 12, 7)))
     assert np.degrees(angles) == pytest.approx(np.linspace(-20, 25, 7), abs=1)

@@ -27,7 +27,7 @@ BOUNDARY = bar_boundary()
 ROOT, JOINT, END = -1.8, 0.0, 1.8
 UPPER = np.linspace(-1.8, -0.7, 4).astype(complex)
 LOWER = np.linspace(0.7, 1.8, 4).astype(complex)
-SHAFTS = (Shaft(UPPER, UPPER), Shaft(LOWER, LOWER))
+SHAFTS = (Shaft(UPPER, UPPER), Shaft(LOWER, LOWER, weights=np.linspace(0.3, 1.0, 4)))
 TIES = Ties(
     np.linspace(-0.5, 0.5, 5) + 0.49j, np.linspace(-0.5, 0.5, 5) + 0.4j, np.linspace(1.0, 2.0, 5)
 )

@@ -14,7 +14,7 @@ from app.document.queries.material.boundary_stiffness import outline_points
 from app.document.queries.material.local_limits import bones_and_handles, limb_shapes_in
 from app.document.queries.memo import memoized_on
 from app.document.rig.chains import Bone, Chain, find_chains
-from engine.arrays import Complexes
+from engine.arrays import Complexes, Floats
 from engine.deform import Armature, Hinge, Shaft, Ties
 from engine.domain import MeshedDomain
 from engine.domain.material.line_ties import BendingPlace, tie_lines
@@ -85,7 +85,9 @@ class Limbs:
     """All limbs of a layer; parents come first."""
 
     limbs: tuple[LimbChain, ...]
-    body: Complexes  # points of the outline that belong to no limb
+    body: Complexes  # points of the outline that belong to no limb, away from roots
+    beside_roots: Complexes  # other points of the body
+    shares_beside: Floats  # of the body's firmness, of these points
     anchor: complex | None  # in the body, for in-betweens; None lets the engine choose
     ties: Ties  # across the drawn line at joints
     widths: tuple[Shaft, ...]  # two points across each bone
@@ -207,7 +209,13 @@ def _limbs_in(
     ties = Ties(lines.starts, lines.ends, LINE_STIFFNESS * lines.shares)
     anchor = body_anchor(domain.loops, cuts)
     return Limbs(
-        limbs=tuple(limbs), body=body, anchor=anchor, ties=ties, widths=_find_widths(domain, limbs)
+        limbs=tuple(limbs),
+        body=body.firm,
+        beside_roots=body.beside,
+        shares_beside=body.shares,
+        anchor=anchor,
+        ties=ties,
+        widths=_find_widths(domain, limbs),
     )
 
 
