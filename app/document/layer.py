@@ -283,11 +283,6 @@ class Layer:
         near = self.cycles[max(count - 2, 0) : count]
         return next((cycle for cycle in near if cycle.covers(frame)), None)
 
-    def cycle_containing(self, frame: float) -> Cycle | None:
-        """Return the cycle whose own frames, without repeats, contain a frame."""
-        count = bisect_right(self.cycles, frame, key=lambda cycle: cycle.first)
-        return next((cycle for cycle in self.cycles[:count][-1:] if cycle.contains(frame)), None)
-
     def source_of(self, frame: int) -> int:
         """Return the keyed frame that this frame shows; an earlier one in repeats of a cycle."""
         cycle = self.cycle_at(frame)

@@ -72,10 +72,6 @@ class SoundMix:
             if each.file.data
         }
 
-    @property
-    def is_silent(self) -> bool:
-        return not self._sounds
-
     def place_of(self, frame: float) -> float:
         """Return the place of a frame's beginning, between two samples or on one."""
         return frame / self._document.fps * self.rate

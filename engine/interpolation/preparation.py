@@ -22,7 +22,6 @@ from engine.paths import root_sheets
 from engine.variant import Variant
 
 TWO_KEYFRAMES = "In-betweens need at least two keyframes, not {count}."
-NO_MAP = "Keyframe {number} is a {kind}, not a harmonic map."
 OTHER_CAGE = (
     "Keyframe {number} has another cage than keyframe 0; all keyframes must have the same cage."
 )

@@ -71,7 +71,6 @@ def test_muted_and_missing_sounds_are_silent():
     missing = replace(one, file=replace(one.file, data=None))
     for each in (muted, missing):
         mix = SoundMix(with_sounds(each), RATE)
-        assert mix.is_silent
         assert not mix.read(0, 1_000).any()
 
 
