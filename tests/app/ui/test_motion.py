@@ -109,7 +109,7 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     assert window.session.tools.motion_setup.joints["foot.L"].real == pytest.approx(
         foot.real + 3, abs=2
     )
-    preset_setup.set_motion_parameters(window.session, size=0.2, speed=4.0)
+    preset_setup.set_motion_parameters(window.session, size=0.5, speed=4.0)
     assert project.document is before, "nothing is done to it yet"
     click(window, "//Animate/**/###give")
     arrive(window, project)
