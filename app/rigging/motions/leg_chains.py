@@ -29,6 +29,7 @@ TAIL_LAG = 0.25  # of a swing: the tip of a long tail is later than its first bo
 LONGER = 1.3  # ratio of the lengths of arms of which the longer one waves
 NECKLESS = 0.5  # share of the turn that a head without a neck keeps: it bends the whole trunk
 LEVEL_HEAD = 0.7  # of the trunk's lean, by which the head turns back
+WALKS = 0.5  # of a cycle: a foot stands at least so long in a walk, shorter in a run
 SAMPLES = 96  # of a cycle, at which the lowest position of the hips is searched
 
 
@@ -93,7 +94,7 @@ class _LimbInstance(MotionInstance):
         self.timing, self.hips = timing, next(iter(body.joints))
         self.is_first_side = self._prefers_first_side()
         gait = template.gait or STANDING
-        self._step(self._fitted(gait) if gait.stance < 1 else gait)
+        self._step(self._fitted(gait) if WALKS <= gait.stance < 1 else gait)
 
     def _step(self, gait: Gait) -> None:
         """Take the steps of a gait, with the hips as high as the legs reach."""
