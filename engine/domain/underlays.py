@@ -21,9 +21,9 @@ from scipy.spatial import cKDTree
 from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.domain.meshing.mesh import Mesh, border_edges
 from engine.domain.outline.slit_sides import CUT_WIDTH
-from engine.geometry import Domain, as_xy, box_diagonal, diameter, shapely_region
+from engine.geometry import Domain, arc_lengths, as_xy, box_diagonal, diameter, shapely_region
 
-BESIDE = 2.0  # slit widths: a vertex on a side of a slit is this near to its line
+BESIDE = 3.0  # slit widths: a vertex on a side of a slit is this near to its line
 SPACING, ROUNDING = 2.0, 3.0  # slit widths between samples of a line, samples of its rounding
 HIDDEN = 0.65  # of the width of a covering limb, less that of a visible limb: width of an underlay
 # What is seen is a trunk if it is this many times as wide as the covering limb: at a slit's tip,
@@ -90,12 +90,17 @@ def find_underlay(
     """
     width = CUT_WIDTH * box_diagonal(domain.outline)
     region = shapely_region(domain.outline, domain.loops[1:])
+    border = border_edges(mesh.triangles).astype(np.intp)
+    border = border[np.isin(border, sides).all(axis=1)]
+    covered = [np.empty((0, 2), dtype=np.intp)]
     outwards = np.zeros(len(mesh.vertices), dtype=np.complex128)
     along = np.zeros(len(mesh.vertices))
     limits = np.zeros(len(mesh.vertices))
     wide = np.zeros(len(mesh.vertices))
     for line in lines:
-        side, at, way, tangents = _find_side(mesh.vertices, sides, line, width)
+        on_side, at, way, tangents = _find_side(mesh.vertices, border, line, width)
+        covered.append(on_side)
+        side = on_side.ravel()
         outwards[side] = -1j * tangents
         along[side] = at
         # At a tip both sides are one. Elsewhere, the outline of the covered limb goes under the
@@ -104,8 +109,7 @@ def find_underlay(
         first, last = np.where(is_tip, 0.0, INK * width)
         limits[side] = np.minimum(first + TAPER * at, last + TAPER * (way - at))
         wide[side] = np.interp(at / way, [0.0, 1.0], np.where(is_tip, *TRUNK))
-    edges = border_edges(mesh.triangles).astype(np.intp)
-    edges = edges[(outwards[edges] != 0).all(axis=1)]
+    edges = np.concatenate(covered)
     if not len(edges):
         return None
     found, inverse = np.unique(edges, return_inverse=True)
@@ -157,20 +161,27 @@ def _strip(near: Indices, far: Indices) -> Indices:
 
 
 def _find_side(
-    vertices: Complexes, sides: Indices, line: Complexes, width: float
+    vertices: Complexes, border: Indices, line: Complexes, width: float
 ) -> tuple[Indices, Floats, float, Complexes]:
-    """Return the vertices on a line's covered side, their places along it, its length, tangents."""
-    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(line))))
+    """Return the edges of a border (e, 2), the inside on their left, on a line's covered side.
+
+    Also of both ends of each in turn (2 e,) the place along the line, the line's length, and of
+    these ends the line's tangents.
+    """
+    lengths = arc_lengths(line)
     count = max(8, int(lengths[-1] / (SPACING * width)))
     at = np.linspace(0.0, lengths[-1], count)
     way = np.interp(at, lengths, line)
     tangents = ndimage.gaussian_filter1d(np.gradient(way), ROUNDING, mode="nearest")
     tangents /= np.abs(tangents)
-    nearest = np.abs(vertices[sides, None] - way).argmin(axis=1)
-    away = (vertices[sides] - way[nearest]) / (1j * tangents[nearest])
-    is_covered = (away.real > 0) & (np.abs(away) < BESIDE * width)
-    chosen = nearest[is_covered]
-    return sides[is_covered], at[chosen], float(lengths[-1]), tangents[chosen]
+    away = np.abs(vertices[border][..., None] - way)
+    nearest = away.argmin(axis=2)
+    # The slit may lie a little beside its line, but the inside is to the left of both.
+    along = np.diff(vertices[border], axis=1)[:, 0]
+    is_covered = (along.conj() * tangents[nearest[:, 0]]).real > 0
+    is_covered &= (away.min(axis=2) < BESIDE * width).all(axis=1)
+    chosen = nearest[is_covered].ravel()
+    return border[is_covered], at[chosen], float(lengths[-1]), tangents[chosen]
 
 
 def _find_room(
