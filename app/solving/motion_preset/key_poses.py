@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,10 +61,17 @@ def find_raised_arms(body: Body, performed: Performance, phases: Iterable[float]
     return raised
 
 
+class Standing(NamedTuple):
+    """Handles of feet that stand on the ground at some time, and whether they always do."""
+
+    feet: frozenset[int]
+    is_always: bool
+
+
 def find_key_poses(
     order: MotionRequest, body: Body, given: AppliedMotion
-) -> tuple[tuple[JointKeyPose, ...], frozenset[int]]:
-    """Return the key poses of a motion, and the handles that stand on the ground at some time.
+) -> tuple[tuple[JointKeyPose, ...], Standing]:
+    """Return the key poses of a motion, and its standing feet.
 
     The last key of a repeat is left out, since it equals the first.
     """
@@ -77,7 +85,11 @@ def find_key_poses(
         times.append((given.repeat_count * period, times[0][1]))
     postures = [performed.pose_at(phase, offset / period) for offset, phase in times]
     edited = {} if order.edits is None else order.edits.shifts
-    standing = frozenset(given.joints[name] for each in postures for name in each.standing)
+    stands = frozenset[str]().union(*(each.standing for each in postures))
+    standing = Standing(
+        frozenset(given.joints[name] for name in stands),
+        all(each.standing == stands for each in postures),
+    )
     return tuple(
         JointKeyPose(
             frame=given.start + offset,
@@ -95,18 +107,19 @@ def find_key_poses(
     ), standing
 
 
-def with_joint_weights(layer: Layer, joints: frozenset[int], feet: frozenset[int]) -> Layer:
+def with_joint_weights(layer: Layer, joints: frozenset[int], standing: Standing) -> Layer:
     """Return a layer whose poses only the joints hold, standing feet with the largest weight.
 
-    Other handles follow the body like sprung handles. Joints of the body are locked, so that a root
-    with a target of its own, as a neck that nods, does not carry the body along.
+    Other handles follow the body like sprung handles. Joints of a body whose feet always stand are
+    locked, so that a root with a target of its own, as a neck that nods, does not carry the body
+    along. In a walk legs may be too short for their steps, and the body gives way.
     """
     on_limbs = {each for chain in find_chains(layer.bones) for each in chain.handles[1:]}
     handles = tuple(
         replace(
             each,
-            weight=FIRM if each.id in feet else each.weight,
-            locked=each.locked or each.id in joints - on_limbs,
+            weight=FIRM if each.id in standing.feet else each.weight,
+            locked=each.locked or (standing.is_always and each.id in joints - on_limbs),
         )
         for each in layer.handles
     )
