@@ -54,7 +54,8 @@ class PointTrails:
         self._animation: Animation | None = None
         if earlier is None or earlier.sampler is None:
             return
-        if earlier.sampler.is_for(clip.layer) and np.array_equal(points, earlier.points):
+        is_own = earlier.sampler.domain is clip.layer.domain and earlier.sampler.is_for(clip.layer)
+        if is_own and np.array_equal(points, earlier.points):
             most = REMEMBERED * (1 + clip.frames.last - clip.frames.first)
             self.sampler = earlier.sampler
             self.known = dict(list(earlier.known.items())[-most:])

@@ -73,11 +73,13 @@ def shorten_tangent(
     )
 
     def is_within(length: float) -> bool:
-        return all(
-            _obeys(*stretches(*(key + share * length * arm * velocity)), limits)
-            for arm in joint.control_offsets
-            for share in SHARES
-        )
+        # Far beyond the limits, stretches overflow and do not obey.
+        with np.errstate(over="ignore", invalid="ignore"):
+            return all(
+                _obeys(*stretches(*(key + share * length * arm * velocity)), limits)
+                for arm in joint.control_offsets
+                for share in SHARES
+            )
 
     length = _longest(is_within)
     return Tangent(joint, length, length)

@@ -27,3 +27,16 @@ def test_trail_keeps_the_poses_of_its_segments_pins():
     clip = clip_of(document.with_layer(replace(layer, keys=keys)), 0)
     poses = PointTrails(clip, np.array([CENTRE])).at(15).poses
     assert set(poses) == {one, other, last} == set(segment_poses(clip, 2))
+
+
+def test_trails_of_a_rebuilt_domain_are_at_their_own_points():
+    # A domain that was built anew may have the same outline.
+    document, points = disc_document(), np.array([CENTRE])
+    earlier = PointTrails(clip_of(document, 0), points)
+    earlier.at(0)
+    layer = document.layers[0]
+    rebuilt = document.with_layer(replace(layer, domain=replace(layer.domain)))
+    pose = random_pose(np.random.default_rng(1), rebuilt)
+    clip = clip_of(key_commands.insert_key(0, 5, pose)(rebuilt), 0)
+    positions = PointTrails(clip, points, earlier=earlier).at(5).positions
+    np.testing.assert_allclose(positions, clip.layer.map_of(pose)(points), atol=1e-6)

@@ -379,3 +379,11 @@ def test_what_leads_to_another_motion_keeps_the_bounds_and_is_proven(variant, bo
         assert k.max() <= proof.k + 1e-6
         if variant == "metric":
             assert k.max() <= max(bounds.k, *(np.abs(key.nu).max() for key in keys)) + 1e-3
+
+
+def test_a_long_segment_after_a_short_one_has_a_short_tangent():
+    # At its full length, the logarithm of |f_z| would overflow.
+    maps = [HarmonicMap(cage=CAGE, phi=CAGE * by, psi=0j * CAGE) for by in (1.0, 9.0, 9.1)]
+    knot = InteriorKnot(1, 5000)
+    tangent = BLENDS[Variant.NU].tangent(maps, knot, WIDE, boundary_of(SHAPE))
+    assert 0 <= tangent.length < 0.01
