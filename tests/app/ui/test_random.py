@@ -111,6 +111,7 @@ SEEDS = (1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (15, 3))
 FAR = {3: 1_000}  # steps of walks that go farther than the others
 MOST_FRAMES = 400  # until the worker has caught up
 REMEMBERED = 20  # actions that are reported when the walk fails
+PATIENCE = 300.0  # seconds, for pins of hard poses on a busy machine
 # Steps between two looks at the invariants, between two saves, and until all work is done.
 LOOKED_AT, SAVED, RESTED = 10, 100, 500
 USUAL, SMALL = (1280, 800), (800, 560)
@@ -199,7 +200,7 @@ class Workers:
             if others:
                 rest.enter_context(self._jobs.held(*others))
             before.close()
-            assert self._jobs.wait_until_idle(), kind
+            assert self._jobs.wait_until_idle(PATIENCE), kind
             self._hold.enter_context(self._jobs.held())
 
     def do_all(self) -> None:
