@@ -13,8 +13,8 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.domain.build import MeshedDomain
-from engine.domain.underlays import Underlay, find_underlay, find_weights
-from engine.geometry import ON_OUTLINE, diameter, loop_ends
+from engine.domain.underlays import Underlay, find_underlay
+from engine.geometry import ON_OUTLINE, barycentric_weights, diameter, loop_ends
 
 FARTHEST = 8.0  # sizes of a triangle beyond it, as far as it is extrapolated
 
@@ -124,7 +124,7 @@ def _beside(domain: MeshedDomain, moved: Indices, places: Complexes) -> ClosedCu
     number[moved] = np.arange(len(moved))
     rows, columns = np.nonzero(number[triangles] >= 0)
     index, around = number[triangles[rows, columns]], triangles[rows]
-    weights = find_weights(vertices[around], places[index])
+    weights = barycentric_weights(vertices[around], places[index])
     # Of the triangles at a vertex, choose the one with the least extrapolation.
     order = np.lexsort((-weights.min(axis=1), index))
     chosen = order[np.flatnonzero(np.diff(index[order], prepend=-1))]
@@ -138,5 +138,7 @@ def _beside(domain: MeshedDomain, moved: Indices, places: Complexes) -> ClosedCu
         far = np.abs(middles - vertices[moved[row]])
         far[areas < np.abs(places[row] - vertices[moved[row]]) ** 2 / 4] = np.inf
         corners[row] = triangles[int(far.argmin())]
-        weights[row] = find_weights(vertices[corners[row : row + 1]], places[row : row + 1])[0]
+        weights[row] = barycentric_weights(vertices[corners[row : row + 1]], places[row : row + 1])[
+            0
+        ]
     return ClosedCuts(vertices=moved, corners=corners, weights=weights)

@@ -21,7 +21,15 @@ from scipy.spatial import cKDTree
 from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.domain.meshing.mesh import Mesh, border_edges
 from engine.domain.outline.slit_sides import CUT_WIDTH
-from engine.geometry import Domain, arc_lengths, as_xy, box_diagonal, diameter, shapely_region
+from engine.geometry import (
+    Domain,
+    arc_lengths,
+    as_xy,
+    barycentric_weights,
+    box_diagonal,
+    diameter,
+    shapely_region,
+)
 
 BESIDE = 3.0  # slit widths: a vertex on a side of a slit is this near to its line
 SPACING, ROUNDING = 2.0, 3.0  # slit widths between samples of a line, samples of its rounding
@@ -216,15 +224,8 @@ def _locate(mesh: Mesh, points: Complexes) -> tuple[Integers, Floats]:
     _, near = cKDTree(as_xy(middles)).query(as_xy(points), k=count)
     near = near.reshape(len(points), count)
     corners = mesh.vertices[mesh.triangles[near]]
-    weights = find_weights(corners.reshape(-1, 3), np.repeat(points, count)).reshape(-1, count, 3)
+    weights = barycentric_weights(corners.reshape(-1, 3), np.repeat(points, count))
+    weights = weights.reshape(-1, count, 3)
     best = weights.min(axis=2).argmax(axis=1)
     rows = np.arange(len(points))
     return mesh.triangles[near[rows, best]], weights[rows, best]
-
-
-def find_weights(corners: Complexes, places: Complexes) -> Floats:
-    """Return the barycentric coordinates (n, 3) of places (n,) in triangles (n, 3)."""
-    a, b, c = corners.T
-    area, away = ((b - a).conj() * (c - a)).imag, places - a
-    second, third = (away.conj() * (c - a)).imag / area, ((b - a).conj() * away).imag / area
-    return np.column_stack([1 - second - third, second, third])

@@ -43,3 +43,4 @@ from engine.geometry.similarity import (
     IDENTITY_MOTION as IDENTITY_MOTION,
     Similarity as Similarity,
 )
+from engine.geometry.triangles import barycentric_weights as barycentric_weights

@@ -15,6 +15,7 @@ from engine.domain import ClosedCuts, MeshedDomain, find_closed_cuts
 from engine.domain.meshing.draw_order import copy_draw_order
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.meshing.triangulation import triangulate
+from engine.geometry import barycentric_weights
 from engine.maps import Span
 
 # Triangles of the coarse meshes of all layers together, used while the full meshes are too slow,
@@ -176,10 +177,10 @@ def _locate(triangles: Integers, points: Complexes, positions: Complexes) -> Mes
     for point in points:
         x, y = point.real, point.imag
         near = np.flatnonzero((low <= x) & (x <= high) & (bottom <= y) & (y <= top))
-        near_weights = _barycentric(point, corners[near])
+        near_weights = barycentric_weights(corners[near], point)
         inside = np.flatnonzero(near_weights.min(axis=1) >= -EDGE)
         if not len(inside):
-            near, near_weights = np.arange(len(triangles)), _barycentric(point, corners)
+            near, near_weights = np.arange(len(triangles)), barycentric_weights(corners, point)
             inside = near_weights.min(axis=1).argmax()[None]
         # Of overlapping triangles, the last is drawn on top.
         found.append(near[inside[-1]])
@@ -188,15 +189,6 @@ def _locate(triangles: Integers, points: Complexes, positions: Complexes) -> Mes
         vertices=triangles[np.array(found, dtype=np.intp)],
         weights=np.array(weights, dtype=np.float64).reshape(len(found), 3),
     )
-
-
-def _barycentric(point: complex, corners: Complexes) -> Floats:
-    """Return the barycentric weights (m, 3) of a point in triangles with these corners (m, 3)."""
-    origin, side = corners[:, 0], corners[:, 1] - corners[:, 0]
-    other, offset = corners[:, 2] - origin, point - origin
-    area = _cross(side, other)
-    v, w = _cross(offset, other) / area, _cross(side, offset) / area
-    return np.column_stack([1.0 - v - w, v, w])
 
 
 def _mean_derivatives(mesh: Mesh, positions: Complexes) -> tuple[Complexes, Complexes]:
@@ -219,11 +211,6 @@ def _gather(values: Complexes, mesh: Mesh) -> Complexes:
     real = np.bincount(corners, np.repeat(values.real, 3), minlength=count)
     imaginary = np.bincount(corners, np.repeat(values.imag, 3), minlength=count)
     return real + 1j * imaginary
-
-
-def _cross(first: Complexes, second: Complexes) -> Floats:
-    product: Floats = (first.conj() * second).imag
-    return product
 
 
 def _span(domain: MeshedDomain) -> Span:
