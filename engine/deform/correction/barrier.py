@@ -19,12 +19,13 @@ import numpy as np
 from engine.arrays import Complexes, Floats
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame
+from engine.deform.correction.variables import BasisValues
 
 FOLDED = 10.0  # −ln σ_b where a map begins to fold
 ROUND = 1e-12  # least b in a denominator
 LEAST = 1e-12  # slack
 # The first weight, its factor from step to step, the last weight, and the last width.
-FIRST, FALL, LAST, WIDTH = 1.0, 0.05, 0.01, 0.05
+FIRST, FALL, LAST, WIDTH = 0.1, 0.05, 0.01, 0.05
 # Part of the slack by which widened limits close in; and the slack, over the width, below which
 # they stay.
 TAKEN, SLIGHT = 0.9, 1e-3
@@ -110,8 +111,7 @@ class LimitBarrier:
     def state(self, x: Floats, last: BarrierState | None = None) -> BarrierState:
         """Evaluate a corrected frame, after a step from `last`."""
         values = self.corrector.variables.at_samples
-        conformal, own, factor = self.base.apply_correction(values, x)
-        mixed = factor * values.q_of(x)
+        conformal, own, mixed, factor = self.base.apply_correction(values, x)
         a, g = np.abs(conformal), own + mixed
         left = (self.limits + self.beyond)[:, None] - log_distortions(a, np.abs(g))
         pushes = self.weight * self.corrector.boundary.barrier_weights / np.maximum(left, LEAST)
@@ -144,12 +144,11 @@ class LimitBarrier:
         sizes, ways = np.linalg.eigh(form)
         sample, way = np.nonzero(sizes > FLAT * np.abs(sizes).max(axis=1, keepdims=True))
         along = np.sqrt(sizes[sample, way])[:, None] * ways[sample, :, way]
-        h, q = values.h[:, near], values.q[:, near]
         of_h, of_q = (slope[:, k] - 1j * slope[:, k + 1] for k in (0, 2))
         rows_h, rows_q = (along[:, k] - 1j * along[:, k + 1] for k in (0, 2))
         return BarrierModel(
-            np.concatenate([(h @ of_h).real, (q @ of_q).real]),
-            np.hstack([(h[:, sample] * rows_h).real.T, (q[:, sample] * rows_q).real.T]),
+            values.rows_at(near, of_h, of_q).sum(axis=0),
+            values.rows_at(near[sample], rows_h, rows_q),
         )
 
 
@@ -198,9 +197,13 @@ def extremes(corrector: PointCorrector, base: BaseFrame, x: Floats | None = None
     """Return the largest ln σ_a, −ln σ_b and k at the samples, (3,); without x, of the base."""
     if x is None:
         return np.asarray(log_distortions(np.abs(base.fz), np.abs(base.g)).max(axis=1))
-    values = corrector.variables.at_samples
-    conformal, own, factor = base.apply_correction(values, x)
-    a, b = np.abs(conformal), np.abs(own + factor * values.q_of(x))
+    return corrected_extremes(corrector.variables.at_samples, base, x)
+
+
+def corrected_extremes(values: BasisValues, base: BaseFrame, x: Floats) -> Floats:
+    """Return the largest ln σ_a, −ln σ_b and k, (3,), for unknowns of these functions."""
+    conformal, own, mixed, _ = base.apply_correction(values, x)
+    a, b = np.abs(conformal), np.abs(own + mixed)
     return np.asarray(log_distortions(a, b).max(axis=1))
 
 

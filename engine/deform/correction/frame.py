@@ -15,6 +15,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.products import real_products
 from engine.deform.correction.variables import BasisValues
 
 
@@ -38,14 +39,16 @@ class BaseFrame(NamedTuple):
 
     def apply_correction(
         self, values: BasisValues, x: Floats
-    ) -> tuple[Complexes, Complexes, Complexes]:
-        """Return F e^h, G e^{σh} and the factor K e^h of q, for unknowns x (2N,).
+    ) -> tuple[Complexes, Complexes, Complexes, Complexes]:
+        """Return F e^h, G e^{σh}, q K e^h and the factor K e^h of q, for unknowns x (2N,).
 
         `values` are the unknowns' functions at the points of the frame.
         """
-        grown = np.exp(values.h_of(x))
+        h, q = values.both_of(x)
+        grown = np.exp(h)
         own = self.g * (grown if self.sign > 0 else 1.0 / grown)
-        return self.fz * grown, own, self.by * grown
+        factor = self.by * grown
+        return self.fz * grown, own, q * factor, factor
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,9 +72,7 @@ class CorrectedFrame:
 
     @classmethod
     def of(cls, corrector: PointCorrector, base: BaseFrame, x: Floats) -> Self:
-        values = corrector.variables.at_nodes
-        conformal, own, factor = base.apply_correction(values, x)
-        return cls(corrector, base, x, conformal, own, values.q_of(x) * factor, factor)
+        return cls(corrector, base, x, *base.apply_correction(corrector.variables.at_nodes, x))
 
     def places(self) -> Complexes:
         """Return the integrals from the anchor to each point, then around each hole."""
@@ -80,12 +81,13 @@ class CorrectedFrame:
 
     def constraint_rows(self) -> Floats:
         """Return the derivatives of `places` by the unknowns: real parts, then imaginary ones."""
-        values, products = self.corrector.variables.at_nodes, self.corrector.paths.real_products
+        values = self.corrector.variables.at_nodes
         f, g = self.conformal, self.base.sign * self.own + self.mixed
-        by_h = products(np.stack([f + g, 1j * (g - f)]), values.h)
-        by_q = products(np.stack([self.factor, 1j * self.factor]), values.q)
-        rows = np.concatenate([by_h, by_q], axis=2)
-        return rows.reshape(-1, rows.shape[2])
+        weights = np.stack([f + g, 1j * (g - f), self.factor])
+        real, imaginary, mixed = self.corrector.paths.products_with(weights, values.common)
+        by_h = real_products(np.concatenate([real, imaginary]), values.to_h)
+        by_q = real_products(np.concatenate([mixed, 1j * mixed]), values.to_q)
+        return np.hstack([by_h, by_q])
 
     def curvature(self, pulls: Complexes) -> "Curvature":
         """Return the second derivative of Re Σ conj(pull_i) place_i by the unknowns."""
@@ -104,5 +106,5 @@ class Curvature(NamedTuple):
 
     def __call__(self, x: Floats) -> Floats:
         """Return the form's product with a vector."""
-        h, q = self.values.h_of(x), self.values.q_of(x)
+        h, q = self.values.both_of(x)
         return self.values.against(self.twice * h + self.both * q, self.both * h)

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import Floats
-from engine.deform.correction.barrier import LAST, WIDTH, LimitBarrier, extremes
+from engine.deform.correction.barrier import LAST, WIDTH, LimitBarrier, corrected_extremes, extremes
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.point_targets import PointTargets
 from engine.deform.correction.solver import PointSolution, solve_correction
+from engine.deform.correction.variables import BasisValues
 from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: a correction ends so far inside, for larger values between samples
@@ -89,18 +90,17 @@ def shorten_solution(
     return replace(solution, x=x, shift=shift, target_errors=np.abs(moved - targets.offsets))
 
 
-def max_feasible_share(
-    corrector: PointCorrector, base: BaseFrame, x: Floats, limits: Floats
-) -> float:
+def max_feasible_share(values: BasisValues, base: BaseFrame, x: Floats, limits: Floats) -> float:
     """Return the largest s of [0, 1], about, with which s h and s q keep limits at the samples.
 
-    A base that exceeds a limit may exceed it a little more. `base` is at the samples of the
-    boundary; `limits` are of ln σ_a, −ln σ_b and k, (3,).
+    A base that exceeds a limit may exceed it a little more. `values` and `base` are at the samples
+    of the boundary; `limits` are of ln σ_a, −ln σ_b and k, (3,).
     """
-    known = np.maximum(limits, extremes(corrector, base) + INSIDE)
+    own = corrected_extremes(values, base, 0.0 * x)
+    known = np.maximum(limits, own + INSIDE)
 
     def is_kept(share: float) -> bool:
-        return bool((extremes(corrector, base, share * x) <= known).all())
+        return bool((corrected_extremes(values, base, share * x) <= known).all())
 
     if is_kept(1.0):
         return 1.0

@@ -9,6 +9,7 @@ import scipy.linalg
 from scipy.spatial import cKDTree
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
+from engine.deform.correction.products import products_along
 from engine.geometry import Pieces, as_xy, bisect_segments
 from engine.maps import Boundary
 from engine.paths import Loops, leave_region, scattered_network
@@ -84,14 +85,15 @@ class PointPaths:
     def integrals(self, values: Complexes) -> Complexes:
         """Integrate values (..., s) along the paths and loops, (..., m + holes)."""
         legs = np.add.reduceat(values * self.steps, self.starts, axis=-1)
-        return np.asarray(legs @ self.passes.T)
+        return np.asarray(legs.real @ self.passes.T + 1j * (legs.imag @ self.passes.T))
 
-    def real_products(self, values: Complexes, functions: Complexes) -> Floats:
-        """Integrate values (k, s) times functions (i, s); the real parts, (k, m + holes, i)."""
-        weights, parts = (values * self.steps).conj().view(np.float64), functions.view(np.float64)
-        ends = [*(2 * self.starts).tolist(), 2 * len(self.nodes)]
-        legs = [weights[:, a:b] @ parts[:, a:b].T for a, b in pairwise(ends)]
-        return np.tensordot(self.passes, np.array(legs), axes=1).swapaxes(0, 1)
+    def products_with(self, values: Complexes, functions: Complexes) -> Complexes:
+        """Integrate values (k, s) times functions (r, s): (k, m + holes, r)."""
+        weights, ends = values * self.steps, [*self.starts.tolist(), len(self.nodes)]
+        legs = [products_along(weights[:, a:b], functions[:, a:b]) for a, b in pairwise(ends)]
+        # As reals, since the paths are.
+        totals = np.tensordot(self.passes, np.array(legs).view(np.float64), axes=1)
+        return totals.view(np.complex128).swapaxes(0, 1)
 
     def spread(self, pulls: Complexes) -> Complexes:
         """Return dz times the sum of the pulls (m + holes,) whose paths pass each node, (s,)."""

@@ -23,7 +23,7 @@ from engine.deform.correction.barrier import BarrierState, LimitBarrier
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame, Curvature
 from engine.deform.correction.point_targets import PointTargets, require_targets
-from engine.deform.correction.step_model import TINY, Rows, StepModel, pulls_against
+from engine.deform.correction.step_model import TINY, Rows, StepModel, work_of_pulls
 from engine.errors import EngineError
 
 SMALL = 1e-6  # step in h: where the iteration ends
@@ -97,11 +97,8 @@ def solve_correction(
     if not problem.is_asked and is_inside and (walls is None or start is None or not start.x.any()):
         nothing = corrector.variables.nothing
         return PointSolution(x=nothing, shift=0j, target_errors=np.abs(targets.offsets), steps=0)
-    if start is None:
-        at = problem.state(corrector.variables.nothing, 0j)
-    else:
-        at = problem.state(start.x, start.shift)
-    found = problem.solve_steps(at)
+    first = (corrector.variables.nothing, 0j) if start is None else (start.x, start.shift)
+    found = problem.solve_steps(problem.state(*first))
     if throw and not found.is_finished:
         raise EngineError(UNFINISHED, steps=found.steps, miss=found.target_errors.max())
     return found
@@ -174,17 +171,21 @@ class _Problem:
         self.held = (self.loose == 0) & (self.give == 0) & (self.yields == 0)[self.group]
 
     def state(self, x: Floats, shift: complex, last: BarrierState | None = None) -> _State:
-        """Evaluate the residuals."""
+        """Evaluate the residuals and the barrier, after a step from `last`."""
+        walls = None if self.walls is None else self.walls.state(x, last)
+        return self._without_barrier(x, shift)._replace(barrier=walls)
+
+    def _without_barrier(self, x: Floats, shift: complex) -> _State:
         frame = CorrectedFrame.of(self.corrector, self.base, x)
         lack = self.roots * (frame.places() + shift * self.of_points - self.wanted)
         turned = self.corrector.variables.at_points.h_of(x).imag[self.turned] - self.turns
-        walls = None if self.walls is None else self.walls.state(x, last)
-        return _State(frame, shift, np.concatenate([lack.real, lack.imag, turned]), walls)
+        return _State(frame, shift, np.concatenate([lack.real, lack.imag, turned]), None)
 
     def constraint_rows(self, at: _State) -> Rows:
         """Return the linearized rows around a state."""
-        h, q = (each[:, self.turned].T for each in self.corrector.variables.at_points)
-        turning = np.hstack([h.imag, 0.0 * q.real])
+        none = np.zeros(len(self.turned), np.complex128)
+        # Im h = Re (−i h).
+        turning = self.corrector.variables.at_points.rows_at(self.turned, none - 1j, none)
         points = np.tile(self.roots, 2)[:, None] * at.frame.constraint_rows()
         scale = float(np.vdot(points, points)) / len(points)
         return Rows(
@@ -199,6 +200,7 @@ class _Problem:
     def solve_steps(self, at: _State) -> PointSolution:
         """Take steps from a state until they are small."""
         size, firm = self.corrector.boundary.size, 0.0
+        h_of = self.corrector.variables.at_nodes.h_of
         small = SMALL if self.walls is None else CALM
         steps, is_finished = 0, True
         while steps < (MOST_STEPS if self.walls is None else MOST_STEPS_AT_WALLS):
@@ -209,16 +211,18 @@ class _Problem:
             )
             model = StepModel(at.frame.x, rows, pushed)
             change, shift = model.solve_step()
-            length = self._length(change)
+            of_change = h_of(change)
+            length = np.abs(of_change).max()
             if length > SMALL:
-                more, along = model.curvature_corrected(
-                    self._bending(at, model.pulls).__call__, change
-                )
+                bending = self._bending(at, model.pulls).__call__
+                more, along = model.curvature_corrected(bending, change)
+                of_more = h_of(more)
                 # The curvature may change a step by at most the step itself.
-                part = min(1.0, length / max(self._length(more), TINY))
+                part = min(1.0, length / max(np.abs(of_more).max(), TINY))
                 change, shift = change + part * more, shift + part * along
+                length = np.abs(of_change + part * of_more).max()
             firm = max(firm, FIRMEST * float(rows.sizes(model.pulls).max()))
-            share = min(1.0, LONGEST / max(self._length(change), TINY))
+            share = min(1.0, LONGEST / max(length, TINY))
             now = self._merit(at, rows.compliances, firm)
             for _ in range(MOST_HALVINGS):
                 tried = self._tried(at, model, change * share, shift * share, share)
@@ -230,7 +234,7 @@ class _Problem:
             if np.isinf(merit):
                 break
             is_stuck = share < 1.0 and merit > self.gains * now
-            moved = self._length(tried.frame.x - at.frame.x)
+            moved = np.abs(h_of(tried.frame.x - at.frame.x)).max()
             off = np.abs(tried.residual)[self.held].max(initial=0.0)
             at = tried
             if self.walls is not None and at.barrier is not None and not self.walls.is_lowest:
@@ -253,15 +257,12 @@ class _Problem:
         known = len(self.roots)
         return at.frame.curvature(-self.roots * (pulls[:known] + 1j * pulls[known : 2 * known]))
 
-    def _length(self, change: Floats) -> float:
-        return float(np.abs(self.corrector.variables.at_nodes.h_of(change)).max())
-
     def _tried(
         self, at: _State, model: StepModel, change: Floats, shift: complex, share: float
     ) -> _State:
         """Return the state after a step, with points back at the model's positions."""
         tried = self.state(at.frame.x + change, at.shift + shift, at.barrier)
-        aim = (1 - share) * at.residual
+        aim, first = (1 - share) * at.residual, tried
         if tried.barrier is not None and tried.barrier.slacks.min() <= 0:
             return tried
         for _ in range(MOST_RETURNS):
@@ -270,11 +271,13 @@ class _Problem:
             if worst < MET / 100 * self.corrector.boundary.size:
                 break
             back, along = model.restoring_step(gap)
-            nearer = self.state(tried.frame.x + back, tried.shift + along, at.barrier)
+            nearer = self._without_barrier(tried.frame.x + back, tried.shift + along)
             if np.abs(np.where(self.held, aim - nearer.residual, 0)).max() > NEARER * worst:
                 break
             tried = nearer
-        return tried
+        if self.walls is None or tried is first:
+            return tried
+        return tried._replace(barrier=self.walls.state(tried.frame.x, at.barrier))
 
     def _keeps_distance(self, at: _State, tried: _State) -> bool:
         """Return whether a step takes no more than a part of the way to a limit."""
@@ -289,10 +292,8 @@ class _Problem:
         lacks = np.sqrt(np.bincount(self.group, at.residual**2, minlength=count))
         own = np.zeros(count)
         own[self.group] = soft
-        pulls = pulls_against(lacks, own, self.yields)
-        pulls = np.where(self.yields > 0, pulls, np.minimum(pulls, firm))
-        pulled = pulls * (lacks - pulls * (own / 2 + self.yields * pulls**2 / 4))
-        total = 0.5 * float(at.frame.x @ at.frame.x) + float(pulled.sum())
+        pulled = float(work_of_pulls(lacks, own, self.yields, firm).sum())
+        total = 0.5 * float(at.frame.x @ at.frame.x) + pulled
         if self.walls is not None and at.barrier is not None:
             total += self.walls.energy(at.barrier)
         return total

@@ -66,11 +66,11 @@ class StepModel:
 
     def __init__(self, x: Floats, rows: Rows, walls: BarrierModel | None = None) -> None:
         self._rows = rows
-        self._root: Floats | None = None
+        self._metric: _WalledMetric | None = None
         if walls is None:
             self._slopes, self._down = rows.jacobian, x
         else:
-            self._root = metric_root(walls.hessian_rows)
+            self._metric = _WalledMetric(walls.hessian_rows)
             self._slopes = self._halved(rows.jacobian.T).T
             self._down = self._halved(x + walls.gradient)
         self._products = self._slopes @ self._slopes.T
@@ -140,11 +140,11 @@ class StepModel:
 
     def _halved(self, v: Floats) -> Floats:
         """Return v (2N,) or (2N, r) in unknowns in which the metric is the identity."""
-        return v if self._root is None else _solved(self._root, v, transposed=False)
+        return v if self._metric is None else self._metric.solve(v, transposed=False)
 
     def _whole(self, v: Floats) -> Floats:
         """Return a step in the original unknowns."""
-        return v if self._root is None else _solved(self._root, v, transposed=True)
+        return v if self._metric is None else self._metric.solve(v, transposed=True)
 
     def _factor(self, soft: Floats) -> None:
         """Factor the matrix of the multipliers, with compliances (r, r)."""
@@ -163,6 +163,28 @@ class StepModel:
         padded = np.append(right, np.zeros(more))
         found = scipy.linalg.lu_solve(self._factors, padded, check_finite=False)
         return found[:count], complex(*found[count:]) if more else 0j
+
+
+class _WalledMetric:
+    """A root S Sᵀ = (1 + rowsᵀ rows)⁻¹ of the metric, for rows (w, n) of a barrier.
+
+    With an orthonormal basis Q of the rows' space, and rows = Rᵀ Qᵀ, the metric is
+    1 + Q R Rᵀ Qᵀ: it differs from the identity in few dimensions, since few samples are near a
+    limit. With L Lᵀ = 1 + R Rᵀ the root is S = 1 + Q (L⁻ᵀ − 1) Qᵀ.
+    """
+
+    def __init__(self, rows: Floats) -> None:
+        basis, triangle = np.linalg.qr(rows.T)
+        self._basis: Floats = basis
+        self._root = metric_root(triangle.T)
+
+    def solve(self, v: Floats, *, transposed: bool) -> Floats:
+        """Return Sᵀ v, or S v, for v (n,) or (n, r)."""
+        parts = self._basis.T @ v
+        found: Floats = v + self._basis @ (
+            _solved(self._root, parts, transposed=transposed) - parts
+        )
+        return found
 
 
 def metric_root(rows: Floats) -> Floats:
@@ -187,7 +209,16 @@ def pulls_against(lacks: Floats, compliances: Floats, yields: Floats) -> Floats:
     return np.asarray(pulls)
 
 
+def work_of_pulls(lacks: Floats, compliances: Floats, yields: Floats, firm: float) -> Floats:
+    """Return the work (g,) against remaining residuals; equalities pull with `firm` at most."""
+    pulls = pulls_against(lacks, compliances, yields)
+    pulls = np.where(yields > 0, pulls, np.minimum(pulls, firm))
+    return np.asarray(pulls * (lacks - pulls * (compliances / 2 + yields * pulls**2 / 4)))
+
+
 def _solved(root: Floats, v: Floats, *, transposed: bool) -> Floats:
+    if not len(root):
+        return v
     # Without SciPy's checks, which take longer than the solution.
     found, _ = scipy.linalg.lapack.dtrtrs(root.T, v, lower=0, trans=0 if transposed else 1)
     return np.asarray(found)

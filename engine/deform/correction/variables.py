@@ -11,7 +11,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, freeze
+from engine.arrays import Complexes, Floats, Indices, freeze
+from engine.deform.correction.products import products, products_along, real_products
 from engine.maps import Boundary
 
 OF_SIZE, OF_SLOPE = 1e-3, 1e-5  # ε and ε'
@@ -20,24 +21,67 @@ RANK = 1e-6
 
 
 class BasisValues(NamedTuple):
-    """The functions of the unknowns at some points: (N, p) each, of h and of q."""
+    """The functions of the unknowns at some points: few common ones, and how to combine them.
 
-    h: Complexes
-    q: Complexes
+    Coefficients are complex, so there are two real unknowns to each common function. Products with
+    `common` read a quarter of the memory that the functions of h and of q themselves would take.
+
+    Parameters
+    ----------
+    common : complex128, shape (r, p)
+    to_h, to_q : complex128, shape (N, r)
+        The coefficients of each unknown's function, of h and of q.
+    """
+
+    common: Complexes
+    to_h: Complexes
+    to_q: Complexes
+
+    @property
+    def h(self) -> Complexes:
+        """The functions of h, (N, p)."""
+        return np.asarray(self.to_h @ self.common)
 
     def h_of(self, x: Floats) -> Complexes:
-        return _combined(x[: len(self.h)], self.h)
+        (h,) = products(_combined(x[: len(self.to_h)], self.to_h)[None], self.common)
+        return np.asarray(h)
 
-    def q_of(self, x: Floats) -> Complexes:
-        return _combined(x[len(self.h) :], self.q)
+    def both_of(self, x: Floats) -> tuple[Complexes, Complexes]:
+        """Return h and q of unknowns, (p,) each."""
+        parts = np.split(x, [len(self.to_h)])
+        both = [_combined(*each) for each in zip(parts, (self.to_h, self.to_q), strict=True)]
+        h, q = products(np.array(both), self.common)
+        return h, q
 
     def against(self, of_h: Complexes, of_q: Complexes) -> Floats:
         """Return Re Σ over the points of numbers (p,) times the functions, float64 (2N,)."""
-        parts = [
-            each.view(np.float64) @ numbers.conj().view(np.float64)
-            for each, numbers in ((self.h, of_h), (self.q, of_q))
-        ]
-        return np.concatenate(parts)
+        of_common = products_along(np.stack([of_h, of_q]), self.common)
+        both = zip(of_common[:, None], (self.to_h, self.to_q), strict=True)
+        return np.concatenate([real_products(*each)[0] for each in both])
+
+    def in_forms(self, forms: Floats) -> Self:
+        """Return the functions of combinations (2N, j) of the unknowns, for h and q each."""
+        of_h, of_q = np.split(forms, [len(self.to_h)])
+        common = np.vstack([of_h.T @ self.to_h, of_q.T @ self.to_q]) @ self.common
+        to_h, to_q = np.split(np.eye(len(common), dtype=np.complex128), 2)
+        return type(self)(common, to_h, to_q)
+
+    def of_h(self, forms: Floats) -> Self:
+        """Return only the unknowns of h, in combinations (N, M) of them."""
+        common, to_h = self.common, forms.T @ self.to_h
+        if len(to_h) < len(common):
+            common, to_h = freeze(to_h @ common), np.eye(len(to_h), dtype=np.complex128)
+        return type(self)(common, freeze(to_h), np.zeros((0, len(common)), np.complex128))
+
+    def rows_at(self, which: Indices, of_h: Complexes, of_q: Complexes) -> Floats:
+        """Return the real parts of numbers (w,) times the functions at points, (w, 2N)."""
+        values = self.common.T[which]
+        return np.hstack(
+            [
+                real_products(values * of_h[:, None], self.to_h),
+                real_products(values * of_q[:, None], self.to_q),
+            ]
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -76,15 +120,16 @@ class Variables:
         coefficients = [own @ to for to in (to_h, to_q)]
         h, q = (freeze(np.pad(each, ((0, len(span) - count), (0, 0)))) for each in coefficients)
         places = [samples, *(span.coordinates(each)[:, :count] for each in (nodes, points))]
+        combined = [freeze(np.ascontiguousarray(each.T)) for each in (to_h, to_q)]
         at_samples, at_nodes, at_points = (
-            BasisValues(*(freeze(each.T @ rows.T) for each in coefficients)) for rows in places
+            BasisValues(freeze(own.T @ rows.T), *combined) for rows in places
         )
         return cls(h=h, q=q, at_nodes=at_nodes, at_samples=at_samples, at_points=at_points)
 
     def of_h(self, forms: Floats) -> Self:
         """Return only the unknowns of h, in combinations (N, M) of them."""
         places = (self.at_nodes, self.at_samples, self.at_points)
-        nodes, samples, points = (BasisValues(freeze(forms.T @ v.h), v.q[:0]) for v in places)
+        nodes, samples, points = (each.of_h(forms) for each in places)
         return type(self)(
             h=freeze(self.h @ forms),
             q=self.q[:, :0],

@@ -148,7 +148,7 @@ def test_size_of_a_correction_is_its_dirichlet_energy():
     count = known.variables.count
     x = RNG.normal(size=2 * count) * 1e-3 / np.sqrt(count)
     boundary, values = known.boundary, known.variables.at_samples
-    h, q = values.h_of(x), values.q_of(x)
+    h, q = values.both_of(x)
     a, b = np.abs(np.exp(h)), np.abs(q * np.exp(h))
     stretched = ((a + b) ** 2 + (a - b) ** 2 + (a + b) ** -2.0 + (a - b) ** -2.0) - 4
     energy = boundary.lengths @ stretched
@@ -249,13 +249,13 @@ def test_a_share_of_a_correction_keeps_the_limits():
     moves = moves_of(known.points, 0.9j)
     found = solve_correction(known, base, PointTargets(moves, np.ones(3), is_anchored=False))
     limits = frame_limits(bounds)
-    share = max_feasible_share(known, samples, found.x, limits)
+    share = max_feasible_share(known.variables.at_samples, samples, found.x, limits)
     assert 0.05 < share < 0.95
 
     def moduli(s):
         values = known.variables.at_samples
-        conformal, own, factor = samples.apply_correction(values, s * found.x)
-        return np.abs(conformal), np.abs(own + factor * values.q_of(s * found.x))
+        conformal, own, mixed, _ = samples.apply_correction(values, s * found.x)
+        return np.abs(conformal), np.abs(own + mixed)
 
     def are_kept(a, b):
         k = (b / a).max() <= bounds.k
@@ -264,11 +264,17 @@ def test_a_share_of_a_correction_keeps_the_limits():
     assert are_kept(*moduli(share))
     assert not are_kept(*moduli(share + 0.03))
     # Within the limits all of it is taken; where the base is beyond, little that goes farther.
-    assert max_feasible_share(known, samples, 0.1 * share * found.x, limits) == 1.0
+    assert (
+        max_feasible_share(known.variables.at_samples, samples, 0.1 * share * found.x, limits)
+        == 1.0
+    )
     tight = frame_limits(Bounds(k=0.001, sigma_a=1.3, sigma_b=0.75))
-    assert max_feasible_share(known, samples, found.x, tight) < 0.2 * share
+    assert max_feasible_share(known.variables.at_samples, samples, found.x, tight) < 0.2 * share
     own = extremes(known, samples, found.x)
-    assert max_feasible_share(known, samples, found.x, frame_limits(bounds, own)) == 1.0
+    assert (
+        max_feasible_share(known.variables.at_samples, samples, found.x, frame_limits(bounds, own))
+        == 1.0
+    )
 
 
 def test_a_start_changes_nothing_but_the_steps():
@@ -342,7 +348,7 @@ def test_others_stay_and_limits_hold_out_of_reach(name, sign):
     assert np.delete(found.target_errors, 1).max() < 1e-4 * size
     # A part of the smallest correction, which leaves the others alone as little, goes less far.
     free = solve_correction(known, nodes, targets)
-    share = max_feasible_share(known, samples, free.x, frame_limits(bounds))
+    share = max_feasible_share(known.variables.at_samples, samples, free.x, frame_limits(bounds))
     assert size - found.target_errors[1] > share * (size - free.target_errors[1])
 
 

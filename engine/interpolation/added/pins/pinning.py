@@ -122,10 +122,10 @@ def fit_pin_corrections(
 
     def largest_share(forms: Floats, series: PiecewiseSeries, count: int) -> float:
         """Return the share of a series that keeps the limits between the solved times."""
-        share = 1.0
+        share, few = 1.0, known.at_samples.in_forms(forms[:-2])
         for time in ((1.0 + chebyshev_nodes(count)) / 2).tolist():
-            x = share * (forms @ series(time))[:-2]
-            share *= max_feasible_share(corrector, base_at(time).samples, x, limits.kept)
+            x = share * np.tile(series(time), 2)
+            share *= max_feasible_share(few, base_at(time).samples, x, limits.kept)
         return share
 
     resolve = partial(separate_variables, values, left_out=LEFT_OUT)
