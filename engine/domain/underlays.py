@@ -18,7 +18,7 @@ from scipy import ndimage
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from engine.arrays import Complexes, Floats, Indices, Integers
+from engine.arrays import Booleans, Complexes, Floats, Indices, Integers
 from engine.domain.meshing.mesh import Mesh, border_edges
 from engine.domain.outline.slit_sides import CUT_WIDTH
 from engine.geometry import (
@@ -41,8 +41,9 @@ BAND = 8.0  # slit widths: largest width of a limb's outline and what is beside 
 BESIDE_BAND = 0.3  # of the width of a limb's underlay: what is between the slit and that band
 TAPER = 0.7  # of the distance from the ends of a slit: width of an underlay there, at most
 INK = 3.0  # slit widths: width of an underlay where it begins
-TIP = 0.1  # slit widths: a tip is this near to the domain
+TIP = 3.0  # slit widths: beyond a tip a slit's line would lead this far into the domain
 STEADY = 8.0  # slit widths along the slit over which widths are rounded
+STRAY = 1.4  # of the usual width of a limb near a place: a ray that is longer misses its other side
 CANDIDATES = 16  # triangles that may contain a point
 
 
@@ -113,7 +114,7 @@ def find_underlay(
         along[side] = at
         # At a tip both sides are one. Elsewhere, the outline of the covered limb goes under the
         # other limb, which covers that outline's ink first.
-        is_tip = shapely.distance(region, shapely.points(as_xy(line[[0, -1]]))) < TIP * width
+        is_tip = _are_tips(region, line, TIP * width)
         first, last = np.where(is_tip, 0.0, INK * width)
         limits[side] = np.minimum(first + TAPER * at, last + TAPER * (way - at))
         wide[side] = np.interp(at / way, [0.0, 1.0], np.where(is_tip, *TRUNK))
@@ -132,23 +133,27 @@ def find_underlay(
     rounding = _rounding(edges, along, STEADY * width)
     # The trunk also fills the notch between the two.
     in_trunk = np.minimum(2.0 * rounding @ is_trunk, 1.0) * (rounding @ covering)
+    # At the ends of a slit, rays may miss the limb's other side: what is beside them is shown.
+    shown = _find_regular(rounding > 0, along, seen)
+    across = seen[shown]
     in_trunk, in_limb = (
-        np.minimum(HIDDEN * depths, np.minimum(seen, limits[found]))
-        for depths in (in_trunk, rounding @ hidden)
+        np.minimum(rounding @ np.minimum(HIDDEN * depths, limits[found]), limits[found])
+        for depths in (np.minimum(in_trunk, seen), np.minimum(rounding @ hidden, across))
     )
     band = np.minimum(BAND * width, (1.0 - BESIDE_BAND) * in_limb)
     # Rows of further vertices: how far they lie beyond the slit, and before it what they show.
-    rows = [(in_trunk, in_trunk), (in_limb - band, seen - band), (in_limb, seen)]
+    rows = [(in_trunk, in_trunk), (in_limb - band, across - band), (in_limb, across)]
     inner, weights = _locate(mesh, np.concatenate([places - row * outwards for row, _ in rows]))
     painted, painted_weights = _locate(
-        mesh, np.concatenate([places - row * outwards for _, row in rows])
+        mesh, np.concatenate([places[shown] - row * outwards[shown] for _, row in rows])
     )
     at_rows = [len(mesh.vertices) + number * len(found) for number in range(len(rows))]
     under, under_limb = (edges[(depths[edges] > 0).any(axis=1)] for depths in (in_trunk, in_limb))
+    # Where a limb bends, its underlay covers itself: no outline shows within it.
     strips = [
+        (under_limb + at_rows[1], under_limb + at_rows[2]),
         (found[under], under + at_rows[0]),
         (found[under_limb], under_limb + at_rows[1]),
-        (under_limb + at_rows[1], under_limb + at_rows[2]),
     ]
     return Underlay(
         vertices=np.tile(found, len(rows)),
@@ -192,6 +197,19 @@ def _find_side(
     return border[is_covered], at[chosen], float(lengths[-1]), tangents[chosen]
 
 
+def _are_tips(region: shapely.Polygon, line: Complexes, ahead: float) -> Booleans:
+    """Return for both ends of a slit's line whether the slit ends there inside a region.
+
+    It does if places ahead of the end are inside, and no slit goes on to them.
+    """
+    lengths = arc_lengths(line)
+    back = np.interp([ahead, lengths[-1] - ahead], lengths, line)
+    ways = line[[0, -1]] - back
+    ends = shapely.points(as_xy(line[[0, -1]] + ahead * ways / np.abs(ways)))
+    is_free = shapely.distance(region.boundary, ends) > ahead / 2
+    return np.asarray(is_free & shapely.contains(region, ends), np.bool_)
+
+
 def _find_room(
     region: shapely.Polygon, places: Complexes, directions: Complexes, most: float
 ) -> Floats:
@@ -205,6 +223,14 @@ def _find_room(
     np.minimum.at(room, numbers, np.abs(hits @ [1, 1j] - places[numbers]))
     room[~shapely.contains_xy(region, places.real, places.imag)] = 0.0
     return room
+
+
+def _find_regular(are_near: Booleans, along: Floats, lengths: Floats) -> Indices:
+    """Return for each place the nearest whose length is not far above those around it."""
+    usual = np.nanmedian(np.where(are_near, lengths, np.nan), axis=1)
+    is_regular = lengths <= STRAY * usual
+    away = np.where(are_near & is_regular, np.abs(along[:, None] - along), np.inf)
+    return np.asarray(np.where(is_regular, np.arange(len(along)), away.argmin(axis=1)), np.intp)
 
 
 def _rounding(edges: Indices, along: Floats, steady: float) -> Floats:

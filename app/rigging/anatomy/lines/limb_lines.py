@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 from scipy import ndimage
 
+from app.rigging.anatomy.lines.around_toes import lead_round_toes
 from app.rigging.anatomy.lines.limb_strips import (
     ABOVE,
     BEYOND,
@@ -22,8 +23,7 @@ from engine.arrays import Booleans, Bytes, Complexes, Floats, Indices
 from engine.geometry import as_xy, shapely_region
 
 NEAREST = 0.06  # of the room beside the axis: the line is at least this far from it
-# Samples across the limb per sample along it, at most: above the ankle, and around the toes.
-STEEPEST, AROUND_TOES = 3, 16
+STEEPEST = 3  # samples across the limb per sample along it, at most
 # Costs beside a missing line, which costs 1: of a step across, of the farthest place, and of a
 # place where no line may run.
 SLOPE, FAR, FORBIDDEN = 0.02, 0.3, 10.0
@@ -32,6 +32,7 @@ SEEN = 0.5  # evidence of a line
 # Shares of the limb's length: largest gap in a line, shortest line, smoothing, and how far beyond
 # the far limb's axis that limb is looked for.
 GAP, SHORTEST, SMOOTHING, NEAR_FAR = 0.06, 0.12, 0.02, 0.04
+INSTEP = 0.08  # of the limb's length: how far above its end toes begin
 STEEP = 1.2  # samples across the limb per sample along it: there the line leaves the limb
 BRIDGE = 0.2  # of the far limb's greatest visible width: least width where the line ends
 THICK = 1.25  # of the usual width of a line: most of one
@@ -104,11 +105,13 @@ def find_limb_line(
     touching = rows[~is_apart & is_one & (rows < root)]
     if len(touching) < SHORTEST * samples:
         return None
-    offsets = _find_path(strips, _mark_allowed(strips, gaps, ankle), ankle)
+    instep = ankle + round(INSTEP * samples)
+    offsets = _find_path(strips, _mark_allowed(strips, gaps, ankle))
     seen: Booleans = strips.evidence[rows, offsets] >= SEEN
     crotch = int(rows[is_open & (rows < root)].max(initial=int(touching[0])))
     is_behind = may_be_behind and _goes_on_as_far(offsets, gaps, crotch, round(GOES_ON * samples))
-    beside = _move_beyond_ink(strips, offsets, gaps, is_behind=is_behind)
+    usual = _usual_width(strips, offsets, gaps)
+    beside = _move_beyond_ink(strips, offsets, gaps, usual, is_behind=is_behind)
     steady = ndimage.median_filter(beside, 5, mode="nearest")
     # Around the toes the line leads straight on to the ground, and not back under the sole.
     steady[: ankle + 1] = np.maximum.accumulate(steady[ankle::-1])[::-1]
@@ -129,9 +132,12 @@ def find_limb_line(
     while first > 0 and apart[first].sum() < OPEN * samples:
         first -= 1
     is_left = (strips.across[first] / (strips.axis[first + 1] - strips.axis[first])).imag > 0
+    toes = lead_round_toes(strips, instep, float(smooth[instep]), usual)
+    points = np.concatenate([toes, strips.place(rows[instep : last + 1], smooth)])
+    branch = strips.place(rows[crotch : crotch + 1], smooth)
     return LimbLine(
-        points=strips.place(rows[first : last + 1], smooth),
-        crotch=crotch - first,
+        points=points,
+        crotch=int(np.abs(points - branch).argmin()),
         far_side="left" if is_left else "right",
     )
 
@@ -185,20 +191,17 @@ def _find_edge(strips: Strips, row: int, edge: int) -> int:
     return place - BLURRED
 
 
-def _find_path(strips: Strips, allowed: Booleans, ankle: int) -> Indices:
+def _find_path(strips: Strips, allowed: Booleans) -> Indices:
     """Return the sample of each row through which the cheapest path leads."""
     count, width = allowed.shape
     costs = 1 - strips.evidence + FAR * np.arange(width) / width
     costs = np.where(allowed, np.where(strips.drawn, costs, 0.0), FORBIDDEN)
-    moves = np.arange(-AROUND_TOES, AROUND_TOES + 1)
-    is_steep = np.abs(moves) > STEEPEST
+    moves = np.arange(-STEEPEST, STEEPEST + 1)
     total, choices = costs[0], np.zeros((count, width), dtype=np.intp)
     for row in range(1, count):
-        padded = np.pad(total, AROUND_TOES, constant_values=np.inf)
+        padded = np.pad(total, STEEPEST, constant_values=np.inf)
         windows = np.lib.stride_tricks.sliding_window_view(padded, width)
         options = windows + SLOPE * np.abs(moves)[:, None]
-        if row >= ankle:
-            options[is_steep] = np.inf
         choices[row] = options.argmin(axis=0)
         total = options.min(axis=0) + costs[row]
     path = np.zeros(count, dtype=np.intp)
@@ -233,8 +236,19 @@ def _goes_on_as_far(offsets: Indices, gaps: Booleans, crotch: int, count: int) -
     return abs(slope - slopes[1]) < abs(slope - slopes[0])
 
 
+def _usual_width(strips: Strips, offsets: Indices, gaps: Booleans) -> float:
+    """Return the most that a line is wide, in samples, from its width across most strips."""
+    is_ink = strips.ink >= SEEN
+    widths = []
+    for row in np.flatnonzero(~gaps.any(axis=1) & is_ink[np.arange(len(offsets)), offsets]):
+        light = np.flatnonzero(~is_ink[row])
+        before, after = light[light < offsets[row]], light[light > offsets[row]]
+        widths.append(after.min(initial=is_ink.shape[1] - 1) - before.max(initial=0))
+    return THICK * float(np.median(widths)) if widths else 0.0
+
+
 def _move_beyond_ink(
-    strips: Strips, offsets: Indices, gaps: Booleans, *, is_behind: bool
+    strips: Strips, offsets: Indices, gaps: Booleans, usual: float, *, is_behind: bool
 ) -> Floats:
     """Return the offsets moved beyond the ink of the limb in front, and to the middle of gaps.
 
@@ -253,7 +267,6 @@ def _move_beyond_ink(
             ends[1, row] = light[light > offset].min(initial=width - 1)
     starts, stops = ends
     is_line = ~gaps.any(axis=1) & is_ink[np.arange(len(offsets)), offsets]
-    usual = THICK * float(np.median((stops - starts)[is_line])) if is_line.any() else 0.0
     moved = np.maximum(starts, stops - usual) if is_behind else np.minimum(stops, starts + usual)
     moved[~is_line] = (starts if is_behind else stops)[~is_line]
     return np.asarray(moved, np.float64)

@@ -29,8 +29,10 @@ class Strips(NamedTuple):
     step: float  # pixels
     inside: Booleans  # the outline
     drawn: Booleans  # inside and opaque
-    ink: Floats  # 0 to 1
-    evidence: Floats  # 0 to 1: of a line or a change of colour
+    ink: Floats  # 0 to 1, of lines that cross the strip
+    marks: Floats  # 0 to 1, of lines in any direction
+    evidence: Floats  # 0 to 1: of a line or a change of colour across the strip
+    traces: Floats  # 0 to 1: the same in any direction
 
     def find_edges(self) -> Indices:
         """Return the sample of each row at which the drawing ends."""
@@ -40,6 +42,12 @@ class Strips(NamedTuple):
 
     def place(self, rows: Indices, offsets: Floats) -> Complexes:
         return np.asarray(self.axis[rows] + self.step * offsets[rows] * self.across[rows])
+
+    def place_between(self, rows: Floats, offsets: Floats) -> Complexes:
+        """Return the places at fractions of rows."""
+        every = np.arange(len(self.axis))
+        axis, across = (np.interp(rows, every, each) for each in (self.axis, self.across))
+        return np.asarray(axis + self.step * offsets * across)
 
 
 def sample_strips(
@@ -66,13 +74,29 @@ def sample_strips(
     colours = np.where(drawn[..., None], colours, 255.0)
     brightness = colours.mean(axis=2)
     size = 2 * int(np.ceil(LINE * longer / step / 2)) + 1
-    around = ndimage.grey_closing(brightness, size=(1, size))
-    ink = np.clip((around - brightness) / (DARK * np.maximum(around, 1.0)), 0.0, 1.0)
-    blurred = ndimage.uniform_filter1d(colours, 3, axis=1)
-    change = np.zeros(places.shape)
-    change[:, 2:-2] = np.abs(blurred[:, 4:] - blurred[:, :-4]).max(axis=2)
+    ink, marks = (_mark_ink(brightness, (high, size)) for high in (1, size))
+    change, along = (_measure_change(colours, axis) for axis in (1, 0))
     evidence = np.maximum(ink, EDGE * np.clip(change / LEVELS, 0.0, 1.0))
-    return Strips(axis, across, step, inside, drawn, ink, evidence)
+    traces = np.maximum.reduce([evidence, marks, EDGE * np.clip(along / LEVELS, 0.0, 1.0)])
+    return Strips(axis, across, step, inside, drawn, ink, marks, evidence, traces)
+
+
+def _mark_ink(brightness: Floats, size: tuple[int, int]) -> Floats:
+    """Return how much darker samples are than what is around them, as far as counts, from 0 to 1.
+
+    Lines are narrower than the size.
+    """
+    around = ndimage.grey_closing(brightness, size=size)
+    return np.clip((around - brightness) / (DARK * np.maximum(around, 1.0)), 0.0, 1.0)
+
+
+def _measure_change(colours: Floats, axis: int) -> Floats:
+    """Return by how many levels colours change along an axis."""
+    blurred = ndimage.uniform_filter1d(colours, 3, axis=axis)
+    before, after = (
+        ndimage.shift(blurred, np.eye(3)[axis] * by, order=0, mode="nearest") for by in (2, -2)
+    )
+    return np.asarray(np.abs(after - before).max(axis=2), np.float64)
 
 
 def _extended_axis(joints: Complexes, step: float) -> tuple[Complexes, float]:
