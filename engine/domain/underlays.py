@@ -137,8 +137,11 @@ def find_underlay(
     shown = _find_regular(rounding > 0, along, seen)
     across = seen[shown]
     in_trunk, in_limb = (
-        np.minimum(rounding @ np.minimum(HIDDEN * depths, limits[found]), limits[found])
-        for depths in (np.minimum(in_trunk, seen), np.minimum(rounding @ hidden, across))
+        np.minimum(rounding @ np.minimum(HIDDEN * depths, most), most)
+        for depths, most in (
+            (in_trunk, np.minimum(limits[found], seen)),
+            (rounding @ hidden, np.minimum(limits[found], across)),
+        )
     )
     band = np.minimum(BAND * width, (1.0 - BESIDE_BAND) * in_limb)
     # Rows of further vertices: how far they lie beyond the slit, and before it what they show.

@@ -125,3 +125,17 @@ def test_ankle_is_no_toe_that_shows_beside_the_near_foot():
     assert len(legs) == 2
     for leg, joints in zip(legs, LIMBS, strict=True):
         assert abs(leg.foot - joints[-1]) < 20
+
+
+def test_line_leads_around_the_near_toes_so_that_they_keep_their_outline():
+    rgba = rgba_of(draw_long_toes())
+    domain, _ = build_picture_domain(rgba, triangles=1000, detail="normal")
+    found = find_limb_line(domain.loops, *LIMBS, rgba, 0j)
+    assert found is not None
+    near = limb(*NEAR_LEG[:-1], (184, 28, 12)).buffer(2)
+    toes = found.points[(found.points.imag < 50) & (found.points.imag > 18)]
+    # Their upper side is level: the line follows it over the far ankle to the tip.
+    assert np.ptp(toes.real) > 20
+    away = shapely.distance(near.exterior, shapely.points(as_xy(toes)))
+    assert away.max() < 4
+    assert not shapely.contains(near.buffer(-2.5), shapely.points(as_xy(toes))).any()

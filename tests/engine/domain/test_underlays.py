@@ -54,6 +54,25 @@ def test_trunk_continues_under_a_limb_as_its_mirror_image():
     np.testing.assert_allclose(further.real + shown.real, 140, atol=1.5)
 
 
+def test_a_limb_is_no_trunk_where_its_slit_begins_at_a_gap():
+    # Two limbs below a body, the covering one little wider; a knife line leads on from their gap.
+    mask = MASK.copy()
+    mask[220:280, 122:134] = False
+    low, high = 128 + 84j, 128 + 175j
+    knife = np.concatenate([[128 + 5j], low + np.linspace(0, 1, 40) * (high - low)])
+    domain, _ = build_domain(mask, triangles=3000, detail="normal", cut_lines=[knife])
+    # The slit may lie a little beside its line, so that the line is in the narrow limb.
+    under = find_closed_cuts(domain, [knife[:0:-1] + 0.5]).underlay
+    rest = domain.mesh.vertices
+    painted = under.paint(rest)[
+        np.unique(under.triangles[under.triangles >= len(rest)]) - len(rest)
+    ]
+    # Its far outline closes it all along: the places that are shown reach up to it.
+    low_down = painted[painted.imag < 110]
+    assert low_down.real.max() > 158
+    assert np.ptp(low_down[low_down.real > 155].imag) > 15
+
+
 def test_underlay_follows_an_affine_map_exactly_beyond_the_slit(domain):
     seam = find_closed_cuts(domain, [LINE[::-1]])
     rest = domain.mesh.vertices

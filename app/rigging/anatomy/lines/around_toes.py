@@ -15,6 +15,7 @@ from engine.arrays import Booleans, Complexes, Floats, Indices
 INK = 0.5  # evidence of a line
 EACH, FREE = 0.05, 0.01  # costs of a step, beside 1 in paint, and in background
 ROUNDING = 2.0  # samples over which the line is rounded
+STEADY = 15  # samples over which the move beyond the ink is steady, more than a line is wide
 MOST = 1.3  # of the usual move through ink
 FARTHEST = 1.0  # of the usual width of a line: how far its other side is looked for
 
@@ -82,6 +83,6 @@ def _beside_ink(strips: Strips, way: Complexes, usual: float) -> Complexes:
     moves = np.where(is_ink.all(axis=1), usual / 2, is_ink.argmin(axis=1))
     # Where the line meets the ground, the ink of the far sole leads on along the normals.
     moves = np.minimum(moves, MOST * np.median(moves[moves > 0])) if moves.any() else moves
-    moves = ndimage.median_filter(moves, 5, mode="nearest")
+    moves = ndimage.median_filter(moves, STEADY, mode="nearest")
     moved = smooth + ndimage.gaussian_filter1d(moves, ROUNDING) * normals
     return strips.place_between(moved.real, moved.imag)
