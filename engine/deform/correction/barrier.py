@@ -152,6 +152,11 @@ class LimitBarrier:
         )
 
 
+def distortion_slopes(a: Floats, g: Complexes, by_h: Complexes, by_q: Complexes) -> Floats:
+    """Return the derivatives of ln σ_a, −ln σ_b and k by Re h, Im h, Re q and Im q, (3, p, 4)."""
+    return _by_both(a, g, by_h, by_q)[0]
+
+
 def _by_both(a: Floats, g: Complexes, by_h: Complexes, by_q: Complexes) -> tuple[Floats, Floats]:
     """Return the derivatives of the quantities (3, p) by Re h, Im h, Re q and Im q.
 

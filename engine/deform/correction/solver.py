@@ -9,8 +9,8 @@ solves the model in which the rows J are linear, exactly, in the few dimensions 
     (J Jᵀ + C) μ + T t = −(r − J x),    Tᵀ μ = 0,    δ = Jᵀ μ − x,
 
 and then the correction by the rows' own curvature, by conjugate gradients. A point with a yield
-force F keeps the target error L (|pull| / F)³. Out of reach it thus stops smoothly: near limits the
-pull grows without bound, and the target error makes up for it.
+force F keeps the target error L (|pull| / F)³. Out of reach, where the pull grows, it thus stops
+smoothly.
 """
 
 from dataclasses import dataclass, replace
@@ -21,9 +21,9 @@ import numpy as np
 from engine.arrays import Floats
 from engine.deform.correction.barrier import BarrierState, LimitBarrier
 from engine.deform.correction.corrector import PointCorrector
-from engine.deform.correction.frame import BaseFrame, CorrectedFrame, Curvature
+from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.point_targets import PointTargets, require_targets
-from engine.deform.correction.step_model import TINY, Rows, StepModel, work_of_pulls
+from engine.deform.correction.step_model import TINY, Form, Rows, StepModel, work_of_pulls
 from engine.errors import EngineError
 
 SMALL = 1e-6  # step in h: where the iteration ends
@@ -92,7 +92,7 @@ def solve_correction(
         iteration does not converge. With `throw=False` the last correction is returned.
     """
     require_targets(targets, len(corrector.points))
-    problem = _Problem(corrector, base, targets, walls)
+    problem = PointProblem(corrector, base, targets, walls)
     is_inside = walls is None or not walls.beyond.any()
     if not problem.is_asked and is_inside and (walls is None or start is None or not start.x.any()):
         nothing = corrector.variables.nothing
@@ -108,13 +108,12 @@ def take_newton_step(
     corrector: PointCorrector, base: BaseFrame, targets: PointTargets, start: PointSolution
 ) -> PointSolution:
     """Take one whole step of a correction without limits, for a base that follows each step."""
-    problem = _Problem(corrector, base, targets, None)
-    at = problem.state(start.x, start.shift)
-    step, shift = StepModel(at.frame.x, problem.constraint_rows(at)).solve_step()
+    problem = PointProblem(corrector, base, targets, None)
+    step, shift = problem.step_model(problem.state(start.x, start.shift)).solve_step()
     return problem.solution(problem.state(start.x + step, start.shift + shift), 1)
 
 
-class _State(NamedTuple):
+class ProblemState(NamedTuple):
     """A corrected frame, and the residuals of its points and rotations, (r,)."""
 
     frame: CorrectedFrame
@@ -123,7 +122,7 @@ class _State(NamedTuple):
     barrier: BarrierState | None
 
 
-class _Problem:
+class PointProblem:
     """One frame: its points as rows that are scaled by the roots of their weights."""
 
     def __init__(
@@ -170,18 +169,18 @@ class _Problem:
         # Rows without compliance that do not yield.
         self.held = (self.loose == 0) & (self.give == 0) & (self.yields == 0)[self.group]
 
-    def state(self, x: Floats, shift: complex, last: BarrierState | None = None) -> _State:
+    def state(self, x: Floats, shift: complex, last: BarrierState | None = None) -> ProblemState:
         """Evaluate the residuals and the barrier, after a step from `last`."""
         walls = None if self.walls is None else self.walls.state(x, last)
         return self._without_barrier(x, shift)._replace(barrier=walls)
 
-    def _without_barrier(self, x: Floats, shift: complex) -> _State:
+    def _without_barrier(self, x: Floats, shift: complex) -> ProblemState:
         frame = CorrectedFrame.of(self.corrector, self.base, x)
         lack = self.roots * (frame.places() + shift * self.of_points - self.wanted)
         turned = self.corrector.variables.at_points.h_of(x).imag[self.turned] - self.turns
-        return _State(frame, shift, np.concatenate([lack.real, lack.imag, turned]), None)
+        return ProblemState(frame, shift, np.concatenate([lack.real, lack.imag, turned]), None)
 
-    def constraint_rows(self, at: _State) -> Rows:
+    def constraint_rows(self, at: ProblemState) -> Rows:
         """Return the linearized rows around a state."""
         none = np.zeros(len(self.turned), np.complex128)
         # Im h = Re (−i h).
@@ -197,28 +196,26 @@ class _Problem:
             self.translations,
         )
 
-    def solve_steps(self, at: _State) -> PointSolution:
+    def step_model(self, at: ProblemState) -> StepModel:
+        pushed = None if self.walls is None or at.barrier is None else self.walls.model(at.barrier)
+        return StepModel(at.frame.x, self.constraint_rows(at), pushed)
+
+    def solve_steps(self, at: ProblemState) -> PointSolution:
         """Take steps from a state until they are small."""
         size, firm = self.corrector.boundary.size, 0.0
         h_of = self.corrector.variables.at_nodes.h_of
-        small = SMALL if self.walls is None else CALM
+        most, small = (MOST_STEPS, SMALL) if self.walls is None else (MOST_STEPS_AT_WALLS, CALM)
         steps, is_finished = 0, True
-        while steps < (MOST_STEPS if self.walls is None else MOST_STEPS_AT_WALLS):
+        while steps < most:
             steps += 1
-            rows = self.constraint_rows(at)
-            pushed = (
-                None if self.walls is None or at.barrier is None else self.walls.model(at.barrier)
-            )
-            model = StepModel(at.frame.x, rows, pushed)
+            model = self.step_model(at)
+            rows = model.rows
             change, shift = model.solve_step()
-            of_change = h_of(change)
-            length = np.abs(of_change).max()
+            length = np.abs(of_change := h_of(change)).max()
             if length > SMALL:
-                bending = self._bending(at, model.pulls).__call__
-                more, along = model.curvature_corrected(bending, change)
-                of_more = h_of(more)
+                more, along = model.curvature_corrected(self._bending(at, model.pulls), change)
                 # The curvature may change a step by at most the step itself.
-                part = min(1.0, length / max(np.abs(of_more).max(), TINY))
+                part = min(1.0, length / max(np.abs(of_more := h_of(more)).max(), TINY))
                 change, shift = change + part * more, shift + part * along
                 length = np.abs(of_change + part * of_more).max()
             firm = max(firm, FIRMEST * float(rows.sizes(model.pulls).max()))
@@ -248,23 +245,29 @@ class _Problem:
             is_finished = False
         return replace(self.solution(at, steps), is_finished=is_finished)
 
-    def solution(self, at: _State, steps: int) -> PointSolution:
+    def solution(self, at: ProblemState, steps: int) -> PointSolution:
         misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
         return PointSolution(x=at.frame.x, shift=at.shift, target_errors=misses, steps=steps)
 
-    def _bending(self, at: _State, pulls: Floats) -> Curvature:
+    def _bending(self, at: ProblemState, pulls: Floats) -> Form:
         """Return the curvature of the rows with pulls."""
-        known = len(self.roots)
-        return at.frame.curvature(-self.roots * (pulls[:known] + 1j * pulls[known : 2 * known]))
+        real, imaginary, _ = np.split(pulls, [len(self.roots), 2 * len(self.roots)])
+        return at.frame.curvature(-self.roots * (real + 1j * imaginary)).__call__
 
     def _tried(
-        self, at: _State, model: StepModel, change: Floats, shift: complex, share: float
-    ) -> _State:
+        self, at: ProblemState, model: StepModel, change: Floats, shift: complex, share: float
+    ) -> ProblemState:
         """Return the state after a step, with points back at the model's positions."""
         tried = self.state(at.frame.x + change, at.shift + shift, at.barrier)
-        aim, first = (1 - share) * at.residual, tried
         if tried.barrier is not None and tried.barrier.slacks.min() <= 0:
             return tried
+        found = self.restored(tried, model, (1 - share) * at.residual)
+        if self.walls is None or found is tried:
+            return found
+        return found._replace(barrier=self.walls.state(found.frame.x, at.barrier))
+
+    def restored(self, tried: ProblemState, model: StepModel, aim: Floats) -> ProblemState:
+        """Return a state, without a barrier, whose held rows are closer to the residuals `aim`."""
         for _ in range(MOST_RETURNS):
             gap = np.where(self.held, aim - tried.residual, 0)
             worst = np.abs(gap).max(initial=0.0)
@@ -275,18 +278,16 @@ class _Problem:
             if np.abs(np.where(self.held, aim - nearer.residual, 0)).max() > NEARER * worst:
                 break
             tried = nearer
-        if self.walls is None or tried is first:
-            return tried
-        return tried._replace(barrier=self.walls.state(tried.frame.x, at.barrier))
+        return tried
 
-    def _keeps_distance(self, at: _State, tried: _State) -> bool:
+    def _keeps_distance(self, at: ProblemState, tried: ProblemState) -> bool:
         """Return whether a step takes no more than a part of the way to a limit."""
         if self.walls is None or at.barrier is None or tried.barrier is None:
             return True
         now = np.minimum(at.barrier.slacks, self.walls.width)
         return bool((tried.barrier.slacks >= APART * now).all())
 
-    def _merit(self, at: _State, soft: Floats, firm: float) -> float:
+    def _merit(self, at: ProblemState, soft: Floats, firm: float) -> float:
         """Return ½ |x|², the barrier and the work of the pulls; equalities pull with `firm`."""
         count = len(self.yields)
         lacks = np.sqrt(np.bincount(self.group, at.residual**2, minlength=count))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.linalg
 
-from engine.arrays import Floats, Indices
+from engine.arrays import Complexes, Floats, Indices
 from engine.deform.correction.barrier import BarrierModel
 
 RIDGE = 1e-13  # of the mean of the rows' products
@@ -60,12 +60,13 @@ class StepModel:
 
     Attributes
     ----------
+    rows : Rows
     pulls : float64, shape (r,)
         The multipliers of the rows.
     """
 
     def __init__(self, x: Floats, rows: Rows, walls: BarrierModel | None = None) -> None:
-        self._rows = rows
+        self.rows = rows
         self._metric: _WalledMetric | None = None
         if walls is None:
             self._slopes, self._down = rows.jacobian, x
@@ -79,7 +80,7 @@ class StepModel:
 
     def _find_pulls(self) -> None:
         """Find the pulls by Newton's method; only those that yield take several rounds."""
-        rows, right = self._rows, self._slopes @ self._down - self._rows.residual
+        rows, right = self.rows, self._slopes @ self._down - self.rows.residual
         by_cube = rows.yields[rows.group]
         together = rows.group[:, None] == rows.group
         lacks = np.maximum(rows.sizes(rows.residual), TINY)[rows.group]
@@ -89,7 +90,8 @@ class StepModel:
             bent = 2 * together * np.outer(by_cube * last, last)
             soft = rows.compliances + by_cube * rows.sizes(last)[rows.group] ** 2
             self._factor(np.diag(soft) + bent)
-            pulls, self._shift = self._solve(right + bent @ last)
+            pulls, shift = self._solve(right + bent @ last)
+            self._shift = complex(shift)
             change = np.where(by_cube > 0, pulls - last, 0.0)
             if np.abs(change).max() <= LEFT_TO_GO * np.abs(last).max():
                 break
@@ -101,13 +103,13 @@ class StepModel:
     def restoring_step(self, gap: Floats) -> tuple[Floats, complex]:
         """Return the least step that changes the rows by `gap`."""
         pulls, shift = self._solve(gap)
-        return self._whole(pulls @ self._slopes), shift
+        return self._whole(pulls @ self._slopes), complex(shift)
 
     def curvature_corrected(self, bending: Form, step: Floats) -> tuple[Floats, complex]:
         """Return the change of a step by the curvature, by conjugate gradients."""
         rest = -bending(step)
-        way, shift = self._preconditioned(rest)
-        found, along = np.zeros_like(way), 0j
+        way, shift = self.solve_along(rest)
+        found, along = np.zeros_like(way), 0j * shift
         push, more = rest, shift
         now = first = float(rest @ way)
         for _ in range(MOST_BENDS):
@@ -121,7 +123,7 @@ class StepModel:
             share = now / total
             found, along = found + share * way, along + share * more
             rest = rest - share * (push + bent)
-            turned, shift = self._preconditioned(rest)
+            turned, shift = self.solve_along(rest)
             new = float(rest @ turned)
             if new < NEARLY * first:
                 break
@@ -131,12 +133,13 @@ class StepModel:
                 rest + new / now * push,
                 new,
             )
-        return found, along
+        return found, complex(along)
 
-    def _preconditioned(self, v: Floats) -> tuple[Floats, complex]:
+    def solve_along(self, v: Floats) -> tuple[Floats, Complexes]:
+        """Return the inverse metric, in which the rows hold, times v (2N,) or (2N, k)."""
         half = self._halved(v)
         pulls, shift = self._solve(-(self._slopes @ half))
-        return self._whole(half + pulls @ self._slopes), shift
+        return self._whole(half + self._slopes.T @ pulls), shift
 
     def _halved(self, v: Floats) -> Floats:
         """Return v (2N,) or (2N, r) in unknowns in which the metric is the identity."""
@@ -148,7 +151,7 @@ class StepModel:
 
     def _factor(self, soft: Floats) -> None:
         """Factor the matrix of the multipliers, with compliances (r, r)."""
-        translations = self._rows.translations
+        translations = self.rows.translations
         count, more = translations.shape
         matrix = np.zeros((count + more, count + more))
         matrix[:count, :count] = self._products + soft
@@ -158,11 +161,12 @@ class StepModel:
         matrix[diagonal, diagonal] += self._ridge
         self._factors = scipy.linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
 
-    def _solve(self, right: Floats) -> tuple[Floats, complex]:
-        count, more = self._rows.translations.shape
-        padded = np.append(right, np.zeros(more))
+    def _solve(self, right: Floats) -> tuple[Floats, Complexes]:
+        count, more = self.rows.translations.shape
+        padded = np.concatenate([right, np.zeros((more, *right.shape[1:]))])
         found = scipy.linalg.lu_solve(self._factors, padded, check_finite=False)
-        return found[:count], complex(*found[count:]) if more else 0j
+        shift = 1j * found[count + 1 :].sum(axis=0) + found[count : count + 1].sum(axis=0)
+        return found[:count], np.asarray(shift)
 
 
 class _WalledMetric:

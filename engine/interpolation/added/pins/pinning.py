@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -11,9 +11,20 @@ from engine.arrays import Complexes, Floats, freeze
 from engine.deform.correction.barrier import extremes
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame
-from engine.deform.correction.limits import frame_limits, max_feasible_share, solve_within
-from engine.deform.correction.solver import PointSolution
+from engine.deform.correction.limits import (
+    INSIDE,
+    frame_limits,
+    max_feasible_share,
+    solve_within,
+)
+from engine.deform.correction.point_targets import PointTargets
+from engine.deform.correction.solver import PointSolution, solve_correction
 from engine.interpolation.added.pins.targets import SegmentPins
+from engine.interpolation.added.pins.time_limits import (
+    CheckedTime,
+    SolvedNode,
+    keep_limits_in_time,
+)
 from engine.interpolation.series.chebyshev import (
     PiecewiseSeries,
     chebyshev_nodes,
@@ -30,12 +41,14 @@ DEGREES = (8, 16)
 # Distance of solved corrections from the limits, for what the series add between the solved times;
 # how far keyframes at a limit are exceeded; and the distance at which the barrier begins.
 INNER, BEYOND_KEYS, WALL = 0.01, 0.001, 0.001
-# Times at which a segment that reaches its limits is checked, and again if it breaks them.
-CHECKED, CHECKED_AGAIN = 64, 256
+# Number of pieces of a segment at whose ends its limits are kept, and of those at whose ends they
+# are checked, the more closely if they could not be kept; and the slack at the first ones, for what
+# happens between them.
+CHECKED, CHECKED_AGAIN, CHECKED_CLOSELY, SLACK = 64, 128, 256, 2e-4
 
 
 class _AtLimitsError(Exception):
-    """Raised when the first correction of a segment comes near the limits, or ends early."""
+    """Raised when a correction of a segment comes near the limits, or ends early."""
 
 
 class CorrectionBase(NamedTuple):
@@ -103,46 +116,33 @@ def fit_pin_corrections(
     stay where limits act elsewhere.
     """
     known, size = corrector.variables, corrector.boundary.size
-    solved: dict[float, PointSolution] = {}
-    limits = _SegmentLimits.of(corrector, base_at, bounds)
-    is_smooth = True
+    segment = _Segment(corrector, base_at, pins, _SegmentLimits.of(corrector, base_at, bounds))
 
-    def at(time: float) -> Floats:
-        if time not in solved:
-            near = min(solved, key=lambda other: abs(other - time), default=None)
-            start = None if near is None else solved[near]
-            solved[time] = _solve_at(corrector, base_at(time), pins, limits, time, start)
-        found = solved[time]
-        if is_smooth and (found.is_limited or not found.is_finished):
-            raise _AtLimitsError
+    def unknowns(found: PointSolution) -> Floats:
         return np.append(found.x, [found.shift.real / size, found.shift.imag / size])
 
-    def values(times: Floats) -> Floats:
-        return np.array([at(time) for time in times.tolist()]).T
+    def smooth(times: Floats) -> Floats:
+        found = [segment.solve(time) for time in times.tolist()]
+        if not all(segment.is_away(time) for time in times.tolist()):
+            raise _AtLimitsError
+        return np.array([unknowns(each) for each in found]).T
 
-    def largest_share(forms: Floats, series: PiecewiseSeries, count: int) -> float:
-        """Return the share of a series that keeps the limits between the solved times."""
-        share, few = 1.0, known.at_samples.in_forms(forms[:-2])
-        for time in ((1.0 + chebyshev_nodes(count)) / 2).tolist():
-            x = share * np.tile(series(time), 2)
-            share *= max_feasible_share(few, base_at(time).samples, x, limits.kept)
-        return share
-
-    resolve = partial(separate_variables, values, left_out=LEFT_OUT)
+    resolve = partial(separate_variables, left_out=LEFT_OUT)
     try:
-        forms, series = resolve(tolerance=TOLERANCE, shortest=SHORTEST, degrees=DEGREES)
+        forms, series = resolve(smooth, tolerance=TOLERANCE, shortest=SHORTEST, degrees=DEGREES)
         share = 1.0
     except _AtLimitsError:
-        is_smooth = False
         # Where limits act, corrections are not analytic in time: one series has to do. Pinned
         # points are then within some hundredths of a pixel in a thousand.
-        for degree in DEGREES:
-            forms, series = resolve(tolerance=np.inf, degrees=(degree,))
-            share = largest_share(forms, series, CHECKED)
-            if share == 1.0:
-                break
-        else:
-            share = min(share, largest_share(forms, series, CHECKED_AGAIN))
+        each, is_kept = segment.solve_within_limits()
+        found = dict(zip(segment.times, each, strict=True))
+        forms, series = resolve(
+            lambda times: np.array([unknowns(found[time]) for time in times.tolist()]).T,
+            tolerance=np.inf,
+            degrees=DEGREES[-1:],
+        )
+        count = CHECKED_AGAIN if is_kept else CHECKED_CLOSELY
+        share = segment.feasible_share(forms[:-2], series, count)
     # One share for the whole segment, so that a limit reached for a moment causes no jolt.
     forms *= share
     count = known.count
@@ -190,18 +190,106 @@ class _SegmentLimits(NamedTuple):
         return cls(frame_limits(bounds, *(end + 2 * BEYOND_KEYS for end in ends)), inner)
 
 
+class _Segment:
+    """The corrections of a segment at its times, each solved once."""
+
+    def __init__(
+        self,
+        corrector: PointCorrector,
+        base_at: Callable[[float], CorrectionBase],
+        pins: SegmentPins,
+        limits: _SegmentLimits,
+    ) -> None:
+        self.corrector, self.limits = corrector, limits
+        self._base_at, self._pins = lru_cache(CHECKED + 1)(base_at), pins
+        self._solved: dict[float, PointSolution] = {}
+
+    @property
+    def times(self) -> list[float]:
+        """The nodes of a series of the highest degree."""
+        return _chebyshev_times(DEGREES[-1])
+
+    def solve(self, time: float) -> PointSolution:
+        """Find the smallest correction at a time, from the nearest solved one, without limits."""
+        if time not in self._solved:
+            near = min(self._solved, key=lambda other: abs(other - time), default=None)
+            start = None if near is None else self._solved[near]
+            nodes, targets = self._base_at(time).nodes, self._targets(time)
+            self._solved[time] = solve_correction(
+                self.corrector, nodes, targets, start, throw=False
+            )
+        return self._solved[time]
+
+    def is_away(self, time: float) -> bool:
+        """Return whether a solved correction converged and is away from the limits."""
+        reached = extremes(self.corrector, self._base_at(time).samples, self._solved[time].x)
+        away = bool((reached <= self._inner(time) - WALL).all())
+        return away and self._solved[time].is_finished
+
+    def solve_within_limits(self) -> tuple[list[PointSolution], bool]:
+        """Find corrections at all nodes whose series keeps the limits between them, too.
+
+        The second value tells whether it does.
+
+        Pinned points stay where limits act elsewhere. If points are out of reach, corrections that
+        keep the limits are solved first, each by itself.
+        """
+        checked = [
+            CheckedTime(time, self._base_at(time).samples, self._kept(time) - SLACK)
+            for time in _chebyshev_times(CHECKED)
+        ]
+        found: list[PointSolution] = []
+        for solve in (self.solve, self._solve_walled):
+            nodes = [
+                SolvedNode(self._base_at(time).nodes, self._targets(time), solve(time))
+                for time in self.times
+            ]
+            if not (solve == self._solve_walled or all(n.solution.is_finished for n in nodes)):
+                continue
+            found, is_kept = keep_limits_in_time(self.corrector, nodes, checked)
+            if is_kept:
+                return found, True
+        return [node.solution for node in nodes], False
+
+    def feasible_share(self, forms: Floats, series: PiecewiseSeries, pieces: int) -> float:
+        """Return the share of a series that keeps the limits, also between the checked times."""
+        share, few = 1.0, self.corrector.variables.at_samples.in_forms(forms)
+        for time in _chebyshev_times(pieces):
+            x, samples = share * np.tile(series(time), 2), self._base_at(time).samples
+            share *= max_feasible_share(few, samples, x, self.limits.kept)
+        return share
+
+    def _solve_walled(self, time: float) -> PointSolution:
+        base = self._base_at(time)
+        return _solve_at(self.corrector, base, self._pins, self.limits, time)
+
+    def _targets(self, time: float) -> PointTargets:
+        base = self._base_at(time)
+        return self._pins.targets(time, base.places, base.anchor)
+
+    def _inner(self, time: float) -> Floats:
+        own = extremes(self.corrector, self._base_at(time).samples) + WALL
+        return np.maximum(self.limits.inner, own)
+
+    def _kept(self, time: float) -> Floats:
+        own = extremes(self.corrector, self._base_at(time).samples) + INSIDE
+        return np.maximum(self.limits.kept, own)
+
+
+def _chebyshev_times(degree: int) -> list[float]:
+    times: list[float] = ((1.0 + chebyshev_nodes(degree)) / 2).tolist()
+    return times
+
+
 def _solve_at(
     corrector: PointCorrector,
     base: CorrectionBase,
     pins: SegmentPins,
     limits: _SegmentLimits,
     time: float,
-    start: PointSolution | None = None,
 ) -> PointSolution:
-    """Find the correction at a time, from one at another time."""
+    """Find the correction at a time within the limits at that time."""
     targets = pins.targets(time, base.places, base.anchor)
     own = extremes(corrector, base.samples) + WALL
     inner = np.maximum(limits.inner, own)
-    return solve_within(
-        corrector, base.nodes, base.samples, targets, inner, width=WALL, start=start
-    )
+    return solve_within(corrector, base.nodes, base.samples, targets, inner, width=WALL)

@@ -1,0 +1,143 @@
+"""Limits at all times of a segment: the least change of corrections that keeps them.
+
+Corrections are solved at few times, and a series goes through them. Between these times, or where
+they were solved without limits, the series may break limits at some samples and times v. With a_v
+the derivative of a distortion there by the unknowns, e_v its excess, and ℓ_j(t) the share of the
+correction at node j in the series, the changes δ_j
+
+    minimise Σ_j ½ δ_jᵀ H_j δ_j   where   Σ_j ℓ_j(t_v) a_v · δ_j ≤ −e_v,
+
+H_j the metric of the correction with the rows of its points: what is pinned stays. The dual has
+one unknown λ_v ≥ 0 for each v, and δ_j = −Σ_v ℓ_j(t_v) λ_v H_j⁻¹ a_v. A few rounds of it suffice.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import scipy.optimize
+from numpy.polynomial import chebyshev
+
+from engine.arrays import Floats
+from engine.deform.correction.barrier import distortion_slopes
+from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.frame import BaseFrame
+from engine.deform.correction.point_targets import PointTargets
+from engine.deform.correction.solver import PointProblem, PointSolution
+from engine.interpolation.series.chebyshev import to_coefficients
+
+ROUNDS = 10
+NEAR = 0.02  # distance from a limit from which on a sample takes part
+MARGIN = 0.0005  # slack that is left
+MOST_HOT = 6  # samples that take part at one time
+FAR = 1.0  # excess that is not removed
+RIDGE = 1e-9  # of the mean diagonal of the dual's form
+
+
+class SolvedNode(NamedTuple):
+    """A time of the series: the base at the nodes of paths, targets, and their correction."""
+
+    base: BaseFrame
+    targets: PointTargets
+    solution: PointSolution
+
+
+class CheckedTime(NamedTuple):
+    """A time at which limits of ln σ_a, −ln σ_b and k, (3,), are kept at the samples."""
+
+    time: float
+    samples: BaseFrame
+    limits: Floats
+
+
+class _NearLimits(NamedTuple):
+    """Samples near limits: excess (v,), slopes (v, 2N), and the shares of the nodes (v, n)."""
+
+    excess: Floats
+    slopes: Floats
+    shares: Floats
+
+
+def keep_limits_in_time(
+    corrector: PointCorrector, nodes: Sequence[SolvedNode], checked: Sequence[CheckedTime]
+) -> tuple[list[PointSolution], bool]:
+    """Return corrections whose series keeps the limits at the checked times, and whether it does.
+
+    The nodes are at all Chebyshev nodes of a degree. The first and the last correction are 0.
+    """
+    inner, degree = nodes[1:-1], len(nodes) - 1
+    times = np.array([each.time for each in checked])
+    shares = chebyshev.chebvander(2 * times - 1, degree) @ to_coefficients(degree)[:, 1:-1]
+    problems = [PointProblem(corrector, n.base, n.targets, None) for n in inner]
+    states = [
+        problem.state(n.solution.x, n.solution.shift)
+        for problem, n in zip(problems, inner, strict=True)
+    ]
+    models = [problem.step_model(at) for problem, at in zip(problems, states, strict=True)]
+    aims = [at.residual for at in states]
+    is_kept = False
+    for _ in range(ROUNDS):
+        x = np.array([at.frame.x for at in states])
+        near = _near_limits(corrector, checked, shares, x)
+        if near is None:
+            break
+        is_kept = bool(near.excess.max(initial=-1.0) <= 0.0)
+        if is_kept:
+            break
+        along = [model.solve_along(near.slopes.T) for model in models]
+        form = sum(
+            np.outer(share, share) * (near.slopes @ change)
+            for share, (change, _) in zip(near.shares.T, along, strict=True)
+        )
+        pushes = _least_pushes(np.asarray(form), near.excess + MARGIN)
+        for j, (problem, model, (change, shift)) in enumerate(
+            zip(problems, models, along, strict=True)
+        ):
+            part = near.shares[:, j] * pushes
+            moved = problem.state(
+                states[j].frame.x - change @ part, states[j].shift - complex(shift @ part)
+            )
+            states[j] = problem.restored(moved, model, aims[j])
+    found = [problem.solution(at, 0) for problem, at in zip(problems, states, strict=True)]
+    first, last = (replace(nodes[i].solution, x=0.0 * nodes[i].solution.x) for i in (0, -1))
+    return [first, *found, last], is_kept
+
+
+def _near_limits(
+    corrector: PointCorrector, checked: Sequence[CheckedTime], shares: Floats, x: Floats
+) -> _NearLimits | None:
+    """Return the samples near limits for corrections x (n, 2N); None if a frame folds."""
+    values, following = corrector.variables.at_samples, corrector.boundary.next_samples
+    excess, slopes, owners = [], [], []
+    for number, (each, own) in enumerate(zip(checked, shares @ x, strict=True)):
+        conformal, kept, mixed, factor = each.samples.apply_correction(values, own)
+        a, g = np.abs(conformal), kept + mixed
+        b, least = np.abs(g), np.exp(-each.limits[1])
+        # σ_b itself and not its logarithm, so that folds open again.
+        reached = np.array([np.log(a + b), -(a - b) / least, b / a])
+        over = reached - np.array([each.limits[0], -1.0, each.limits[2]])[:, None]
+        grows = over[:, following] > over
+        is_peak = ~grows
+        is_peak[:, following] &= grows
+        kinds, samples = np.nonzero(is_peak & (over > -NEAR))
+        hottest = np.argsort(over[kinds, samples])[::-1][:MOST_HOT]
+        kinds, samples = kinds[hottest], samples[hottest]
+        by_h = each.samples.sign * kept + mixed
+        of_all = distortion_slopes(a[samples], g[samples], by_h[samples], factor[samples])
+        of_each = of_all[kinds, np.arange(len(samples))]
+        of_each[kinds == 1] *= ((a - b)[samples[kinds == 1]] / least)[:, None]
+        of_h, of_q = (of_each[:, k] - 1j * of_each[:, k + 1] for k in (0, 2))
+        slopes.append(values.rows_at(samples, of_h, of_q))
+        excess.append(over[kinds, samples])
+        owners.append(np.full(len(samples), number))
+    return _NearLimits(np.concatenate(excess), np.vstack(slopes), shares[np.concatenate(owners)])
+
+
+def _least_pushes(form: Floats, excess: Floats) -> Floats:
+    """Return the λ ≥ 0 that minimises ½ λᵀ form λ − excess · λ."""
+    form = form + RIDGE * np.trace(form) / len(form) * np.eye(len(form))
+    root = np.linalg.cholesky(form)
+    right = np.linalg.solve(root, excess)
+    # ½ |Lᵀ λ − L⁻¹ excess|² is the same but for a constant.
+    return np.asarray(scipy.optimize.nnls(root.T, right)[0])
