@@ -11,10 +11,8 @@ from engine.interpolation.added.pins.bones import (
     SegmentBones as SegmentBones,
 )
 from engine.interpolation.added.pins.evaluated import SpanBasis as SpanBasis
-from engine.interpolation.added.pins.pinning import (
-    CorrectionBase as CorrectionBase,
-    CorrectionSeries as CorrectionSeries,
-)
+from engine.interpolation.added.pins.pinning import CorrectionSeries as CorrectionSeries
+from engine.interpolation.added.pins.segment_solver import CorrectionBase as CorrectionBase
 from engine.interpolation.added.pins.targets import SegmentPins as SegmentPins
 from engine.interpolation.blends.table import BLENDS as BLENDS
 from engine.interpolation.inbetweens import Frame as Frame, Inbetweens as Inbetweens

@@ -9,11 +9,11 @@ from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame
 from engine.errors import EngineError
 from engine.interpolation.added.pins.pinning import (
-    CorrectionBase,
     CorrectionSeries,
     fit_pin_corrections,
     solve_pin_correction,
 )
+from engine.interpolation.added.pins.segment_solver import CorrectionBase
 from engine.interpolation.added.pins.targets import SegmentPins
 from engine.interpolation.blends.blend import Blend
 from engine.interpolation.blends.table import BLENDS

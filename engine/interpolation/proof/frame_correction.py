@@ -16,7 +16,8 @@ from engine.deform.correction.limits import (
 )
 from engine.deform.correction.point_targets import PointTargets
 from engine.deform.correction.solver import PointSolution
-from engine.interpolation.added.pins.pinning import CorrectionBase, CorrectionSeries
+from engine.interpolation.added.pins.pinning import CorrectionSeries
+from engine.interpolation.added.pins.segment_solver import CorrectionBase
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.bisection import prove
 from engine.maps import Bounds

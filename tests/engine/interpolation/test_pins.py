@@ -9,6 +9,7 @@ from interpolation_shapes import bar, bent, inner_points, stage_of
 from numpy.testing import assert_allclose
 
 from engine.deform.correction.corrector import build_corrector
+from engine.deform.correction.frame import BaseFrame
 from engine.deform.correction.limits import solve_within
 from engine.deform.correction.solver import solve_correction
 from engine.interpolation import (
@@ -19,7 +20,7 @@ from engine.interpolation import (
     solve_pins,
     value_points_for_corrections,
 )
-from engine.interpolation.added.pins import pinning
+from engine.interpolation.added.pins import pinning, segment_solver
 from engine.maps import Bounds
 from engine.streaming import Positions, build_series
 
@@ -95,7 +96,7 @@ def test_series_is_what_is_solved_at_any_time():
         frame, values = base.frame_with_values(time)
         fz, g, by = (z[nodes] for z in values)
         targets = pins.targets(time, frame.positions, base.anchor_position(time))
-        found = solve_correction(corrector, pinning.BaseFrame(fz, g, by, -1), targets)
+        found = solve_correction(corrector, BaseFrame(fz, g, by, -1), targets)
         series = known.corrections[0].known
         values = corrector.variables.at_samples
         h = base.boundary.span.evaluate(
@@ -224,7 +225,7 @@ def test_pins_far_out_of_reach_cost_few_solves(monkeypatch):
         solves.append(solve_within(*given, **options))
         return solves[-1]
 
-    monkeypatch.setattr(pinning, "solve_within", solve)
+    monkeypatch.setattr(segment_solver, "solve_within", solve)
     # Neighbours that are to pass each other.
     handles = np.array([-1.7, -1.6, 1.6 - 0.1j])
     maps, stage = keyframes(), stage_of(SHAPE, handles, ANCHOR)

@@ -1,5 +1,7 @@
 """Limits at all times of a segment: kept between solved times, with pins in place."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from interpolation_shapes import bar, bent, stage_of
@@ -16,6 +18,7 @@ from engine.interpolation import (
     value_points_for_corrections,
 )
 from engine.interpolation.added.pins import time_limits
+from engine.interpolation.added.pins.pinning import solve_pin_correction
 from engine.maps import Bounds
 
 SHAPE, ANCHOR = bar(), 0.1 + 0.1j
@@ -76,6 +79,17 @@ def test_the_same_segment_has_the_same_corrections():
     assert_allclose(
         first.h @ first.series.at(times), second.h @ second.series.at(times), rtol=0, atol=0
     )
+
+
+def test_a_single_frame_keeps_limits_and_pins_as_the_segment_does():
+    base, corrector, pins = asking(8j)
+    known = base.with_correction(solve_pins(base, corrector, pins, TIGHT))
+    one = solve_pin_correction(corrector, partial(evaluate_base, base, corrector), pins, TIGHT, 0.3)
+    alone = base.with_correction(one)
+    places, together = (each.frame(0.3).positions[:3] for each in (alone, known))
+    assert_allclose(places, together, atol=4e-4)
+    most = extremes(base, np.array([0.0, 1.0]))
+    assert extremes(alone, np.array([0.3]))[1] >= min(TIGHT.sigma_b, most[1]) * 0.997
 
 
 def test_pushes_are_the_least_that_remove_the_excess():

@@ -17,7 +17,6 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.optimize
-from numpy.polynomial import chebyshev
 
 from engine.arrays import Floats
 from engine.deform.correction.barrier import distortion_slopes
@@ -25,13 +24,11 @@ from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame
 from engine.deform.correction.point_targets import PointTargets
 from engine.deform.correction.solver import PointProblem, PointSolution
-from engine.interpolation.series.chebyshev import to_coefficients
 
 ROUNDS = 10
 NEAR = 0.02  # distance from a limit from which on a sample takes part
 MARGIN = 0.0005  # slack that is left
 MOST_HOT = 6  # samples that take part at one time
-FAR = 1.0  # excess that is not removed
 RIDGE = 1e-9  # of the mean diagonal of the dual's form
 
 
@@ -59,20 +56,20 @@ class _NearLimits(NamedTuple):
     shares: Floats
 
 
-def keep_limits_in_time(
-    corrector: PointCorrector, nodes: Sequence[SolvedNode], checked: Sequence[CheckedTime]
+def keep_limits(
+    corrector: PointCorrector,
+    nodes: Sequence[SolvedNode],
+    checked: Sequence[CheckedTime],
+    shares: Floats,
 ) -> tuple[list[PointSolution], bool]:
     """Return corrections whose series keeps the limits at the checked times, and whether it does.
 
-    The nodes are at all Chebyshev nodes of a degree. The first and the last correction are 0.
+    `shares` (c, n) are those of the nodes at the checked times.
     """
-    inner, degree = nodes[1:-1], len(nodes) - 1
-    times = np.array([each.time for each in checked])
-    shares = chebyshev.chebvander(2 * times - 1, degree) @ to_coefficients(degree)[:, 1:-1]
-    problems = [PointProblem(corrector, n.base, n.targets, None) for n in inner]
+    problems = [PointProblem(corrector, n.base, n.targets, None) for n in nodes]
     states = [
         problem.state(n.solution.x, n.solution.shift)
-        for problem, n in zip(problems, inner, strict=True)
+        for problem, n in zip(problems, nodes, strict=True)
     ]
     models = [problem.step_model(at) for problem, at in zip(problems, states, strict=True)]
     aims = [at.residual for at in states]
@@ -80,8 +77,6 @@ def keep_limits_in_time(
     for _ in range(ROUNDS):
         x = np.array([at.frame.x for at in states])
         near = _near_limits(corrector, checked, shares, x)
-        if near is None:
-            break
         is_kept = bool(near.excess.max(initial=-1.0) <= 0.0)
         if is_kept:
             break
@@ -100,14 +95,13 @@ def keep_limits_in_time(
             )
             states[j] = problem.restored(moved, model, aims[j])
     found = [problem.solution(at, 0) for problem, at in zip(problems, states, strict=True)]
-    first, last = (replace(nodes[i].solution, x=0.0 * nodes[i].solution.x) for i in (0, -1))
-    return [first, *found, last], is_kept
+    return [replace(each, is_limited=True) for each in found], is_kept
 
 
 def _near_limits(
     corrector: PointCorrector, checked: Sequence[CheckedTime], shares: Floats, x: Floats
-) -> _NearLimits | None:
-    """Return the samples near limits for corrections x (n, 2N); None if a frame folds."""
+) -> _NearLimits:
+    """Return the samples near limits for corrections x (n, 2N)."""
     values, following = corrector.variables.at_samples, corrector.boundary.next_samples
     excess, slopes, owners = [], [], []
     for number, (each, own) in enumerate(zip(checked, shares @ x, strict=True)):
