@@ -18,6 +18,13 @@ from app.rigging.anatomy.lines.limb_lines import (
     LimbLine as LimbLine,
     find_limb_line as find_limb_line,
 )
+from app.rigging.anatomy.lines.near_arms import (
+    NearArm as NearArm,
+    find_near_arm as find_near_arm,
+    move_off_arm as move_off_arm,
+    trace_near_arm as trace_near_arm,
+    with_near_arm as with_near_arm,
+)
 from app.rigging.anatomy.lines.near_limbs import (
     NearLimb as NearLimb,
     guess_near_limbs as guess_near_limbs,

@@ -3,7 +3,7 @@
 A drawing shows nothing of a limb or a trunk where a limb covers it. When they part, what is covered
 would end at the slit. Instead it continues there, as its own mirror image across the slit. A limb
 continues up to the width of the limb that covered it, and the mirror image of its outline closes
-it. A trunk continues below the whole limb.
+it. A trunk continues below the whole limb; below a flap, which a slit goes around, from both sides.
 """
 
 from collections.abc import Sequence
@@ -14,16 +14,16 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 import shapely
-from scipy import ndimage
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, Integers
+from engine.domain.covered_sides import are_tips, find_covered_side, find_room, sample_line
+from engine.domain.flaps import locate_between, measure_flap
 from engine.domain.meshing.mesh import Mesh, border_edges
 from engine.domain.outline.slit_sides import CUT_WIDTH
 from engine.geometry import (
     Domain,
-    arc_lengths,
     as_xy,
     barycentric_weights,
     box_diagonal,
@@ -31,12 +31,12 @@ from engine.geometry import (
     shapely_region,
 )
 
-BESIDE = 3.0  # slit widths: a vertex on a side of a slit is this near to its line
-SPACING, ROUNDING = 2.0, 3.0  # slit widths between samples of a line, samples of its rounding
 HIDDEN = 0.65  # of the width of a covering limb, less that of a visible limb: width of an underlay
 # What is seen is a trunk if it is this many times as wide as the covering limb: at a slit's tip,
 # where a limb leaves the trunk, and elsewhere.
 TRUNK = (0.5, 2.0)
+BESIDE_SLIT = 1.5  # slit widths from its line: what is seen beside a flap is measured from there
+PAINTED = 0.4  # of the width of a strip under a flap: what of the trunk is stretched over it
 BAND = 8.0  # slit widths: largest width of a limb's outline and what is beside it
 BESIDE_BAND = 0.3  # of the width of a limb's underlay: what is between the slit and that band
 TAPER = 0.7  # of the distance from the ends of a slit: width of an underlay there, at most
@@ -101,20 +101,98 @@ def find_underlay(
     region = shapely_region(domain.outline, domain.loops[1:])
     border = border_edges(mesh.triangles).astype(np.intp)
     border = border[np.isin(border, sides).all(axis=1)]
+    around = [are_tips(region, line, TIP * width).all() for line in lines]
+    limbs = [each for each, is_flap in zip(lines, around, strict=True) if not is_flap]
+    parts = [
+        _under_limbs(mesh, region, border, limbs, width),
+        *(
+            _under_flap(mesh, region, border, line, width)
+            for line, is_flap in zip(lines, around, strict=True)
+            if is_flap
+        ),
+    ]
+    return _joined([part for part in parts if part is not None], len(mesh.vertices))
+
+
+def _joined(parts: Sequence[Underlay], count: int) -> Underlay | None:
+    """Return underlays of a mesh of `count` vertices as one; None without any."""
+    if len(parts) < 2:
+        return parts[0] if parts else None
+    fields = ("vertices", "corners", "weights", "painted_corners", "painted_weights")
+    triangles, further = [], 0
+    for part in parts:
+        triangles.append(np.where(part.triangles < count, part.triangles, part.triangles + further))
+        further += len(part.vertices)
+    joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in fields}
+    return Underlay(**joined, triangles=np.concatenate(triangles).astype(np.int32))
+
+
+def _under_flap(
+    mesh: Mesh, region: shapely.Polygon, border: Indices, line: Complexes, width: float
+) -> Underlay | None:
+    """Return what continues under a flap: a strip on each side, stretched between both sides."""
+    samples = sample_line(line, width)
+    edges, chosen = find_covered_side(mesh.vertices, border, samples, width)
+    if not len(edges):
+        return None
+    found, first, inverse = np.unique(edges, return_index=True, return_inverse=True)
+    edges, chosen = inverse.reshape(-1, 2), chosen[first]
+    inwards = -1j * samples.tangents
+    most = diameter(np.asarray(shapely.get_coordinates(region) @ [1, 1j]))
+    seen = find_room(region, samples.way - BESIDE_SLIT * width * inwards, -inwards, most)
+    # The outline of the trunk is not painted under the flap.
+    seen = np.maximum(seen - BAND * width, 0.0)
+    flap = measure_flap(samples.way, inwards, seen)
+    # The side that shows more of the trunk covers the other.
+    edges = edges[np.argsort(flap.depths[chosen][edges].sum(axis=1), kind="stable")]
+    places = mesh.vertices[found]
+    away = np.abs(samples.way[flap.opposite[chosen], None] - places)
+    np.fill_diagonal(away, np.inf)
+    across = away.argmin(axis=1)
+    towards = flap.towards[chosen]
+    wanted = places + flap.depths[chosen] * towards
+    beside, weights = locate_between(places, across, wanted)
+    # Rows: at the slit, beside the ink of the flap, and below it.
+    beside_ink = BESIDE_SLIT * width
+    shown = beside_ink + np.stack(
+        [np.zeros(len(found)), np.minimum(PAINTED * flap.depths, seen)[chosen]]
+    )
+    painted, painted_weights = _locate(mesh, (places - shown * towards).ravel())
+    numbers = np.arange(len(found))
+    corners = found[np.column_stack([numbers, across, beside])]
+    edges += len(mesh.vertices)
+    return Underlay(
+        vertices=np.tile(found, 2),
+        corners=np.concatenate([corners, corners]).astype(np.int32),
+        # A place Σ w z is the mirror image of 2 z₀ − Σ w z.
+        weights=np.concatenate(
+            [np.tile([1.0, 0.0, 0.0], (len(found), 1)), [2.0, 0.0, 0.0] - weights]
+        ),
+        painted_corners=painted,
+        painted_weights=painted_weights,
+        triangles=_strip(edges, edges + len(found)).astype(np.int32),
+    )
+
+
+def _under_limbs(
+    mesh: Mesh, region: shapely.Polygon, border: Indices, lines: Sequence[Complexes], width: float
+) -> Underlay | None:
+    """Return what continues under limbs."""
     covered = [np.empty((0, 2), dtype=np.intp)]
     outwards = np.zeros(len(mesh.vertices), dtype=np.complex128)
     along = np.zeros(len(mesh.vertices))
     limits = np.zeros(len(mesh.vertices))
     wide = np.zeros(len(mesh.vertices))
     for line in lines:
-        on_side, at, way, tangents = _find_side(mesh.vertices, border, line, width)
+        samples = sample_line(line, width)
+        on_side, chosen = find_covered_side(mesh.vertices, border, samples, width)
         covered.append(on_side)
-        side = on_side.ravel()
-        outwards[side] = -1j * tangents
+        side, at, way = on_side.ravel(), samples.at[chosen], samples.at[-1]
+        outwards[side] = -1j * samples.tangents[chosen]
         along[side] = at
         # At a tip both sides are one. Elsewhere, the outline of the covered limb goes under the
         # other limb, which covers that outline's ink first.
-        is_tip = _are_tips(region, line, TIP * width)
+        is_tip = are_tips(region, line, TIP * width)
         first, last = np.where(is_tip, 0.0, INK * width)
         limits[side] = np.minimum(first + TAPER * at, last + TAPER * (way - at))
         wide[side] = np.interp(at / way, [0.0, 1.0], np.where(is_tip, *TRUNK))
@@ -125,9 +203,9 @@ def find_underlay(
     edges = inverse.reshape(-1, 2)
     outwards, along = outwards[found], along[found]
     places = mesh.vertices[found]
-    most = diameter(domain.outline)
-    seen = _find_room(region, places - width * outwards / 2, -outwards, most)
-    covering = _find_room(region, places + 2.5 * width * outwards, outwards, most)
+    most = diameter(np.asarray(shapely.get_coordinates(region) @ [1, 1j]))
+    seen = find_room(region, places - width * outwards / 2, -outwards, most)
+    covering = find_room(region, places + 2.5 * width * outwards, outwards, most)
     is_trunk = seen > wide[found] * covering
     hidden = np.where(is_trunk, 0.0, np.maximum(covering - seen, 0.0))
     rounding = _rounding(edges, along, STEADY * width)
@@ -171,61 +249,7 @@ def find_underlay(
 def _strip(near: Indices, far: Indices) -> Indices:
     """Return triangles (2 b, 3) between two rows of edges (b, 2)."""
     (first, second), (beyond, after) = near.T, far.T
-    return np.concatenate(
-        [np.column_stack([first, second, after]), np.column_stack([first, after, beyond])]
-    )
-
-
-def _find_side(
-    vertices: Complexes, border: Indices, line: Complexes, width: float
-) -> tuple[Indices, Floats, float, Complexes]:
-    """Return the edges of a border (e, 2), the inside on their left, on a line's covered side.
-
-    Also of both ends of each in turn (2 e,) the place along the line, the line's length, and of
-    these ends the line's tangents.
-    """
-    lengths = arc_lengths(line)
-    count = max(8, int(lengths[-1] / (SPACING * width)))
-    at = np.linspace(0.0, lengths[-1], count)
-    way = np.interp(at, lengths, line)
-    tangents = ndimage.gaussian_filter1d(np.gradient(way), ROUNDING, mode="nearest")
-    tangents /= np.abs(tangents)
-    away = np.abs(vertices[border][..., None] - way)
-    nearest = away.argmin(axis=2)
-    # The slit may lie a little beside its line, but the inside is to the left of both.
-    along = np.diff(vertices[border], axis=1)[:, 0]
-    is_covered = (along.conj() * tangents[nearest[:, 0]]).real > 0
-    is_covered &= (away.min(axis=2) < BESIDE * width).all(axis=1)
-    chosen = nearest[is_covered].ravel()
-    return border[is_covered], at[chosen], float(lengths[-1]), tangents[chosen]
-
-
-def _are_tips(region: shapely.Polygon, line: Complexes, ahead: float) -> Booleans:
-    """Return for both ends of a slit's line whether the slit ends there inside a region.
-
-    It does if places ahead of the end are inside, and no slit goes on to them.
-    """
-    lengths = arc_lengths(line)
-    back = np.interp([ahead, lengths[-1] - ahead], lengths, line)
-    ways = line[[0, -1]] - back
-    ends = shapely.points(as_xy(line[[0, -1]] + ahead * ways / np.abs(ways)))
-    is_free = shapely.distance(region.boundary, ends) > ahead / 2
-    return np.asarray(is_free & shapely.contains(region, ends), np.bool_)
-
-
-def _find_room(
-    region: shapely.Polygon, places: Complexes, directions: Complexes, most: float
-) -> Floats:
-    """Return how far rays run inside a region from places (n,)."""
-    ends = places + most * directions
-    rays = shapely.linestrings(np.stack([as_xy(places), as_xy(ends)], axis=1))
-    room = np.full(len(places), most)
-    hits, numbers = shapely.get_coordinates(
-        shapely.intersection(region.boundary, rays), return_index=True
-    )
-    np.minimum.at(room, numbers, np.abs(hits @ [1, 1j] - places[numbers]))
-    room[~shapely.contains_xy(region, places.real, places.imag)] = 0.0
-    return room
+    return np.column_stack([first, second, after, first, after, beyond]).reshape(-1, 3)
 
 
 def _find_regular(are_near: Booleans, along: Floats, lengths: Floats) -> Indices:

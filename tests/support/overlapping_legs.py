@@ -25,6 +25,9 @@ FRONT_ARMS = [
 ]
 FRONT_TRUNK = ((150, 360, 56), (150, 270, 50))
 FRONT_HEAD = ((150, 425, 20), (150, 470, 42))
+# From the side, over the trunk; the shoulder has no line across.
+NEAR_ARM = ((138, 350, 15), (130, 300, 13), (146, 256, 12))
+BENT_ARM = ((136, 350, 15), (126, 300, 13), (206, 286, 11))
 JOINTS = {
     "hips": 142 + 262j,
     "chest": 140 + 345j,
@@ -61,6 +64,21 @@ def draw_long_toes() -> Image.Image:
     return _drawn(parts, has_lines=True)
 
 
+def draw_arm(style: Literal["lines", "flat"], arm: Discs = NEAR_ARM) -> Image.Image:
+    """Draw a person from the side with the near arm over the trunk, or without one if it is ()."""
+    wide = (140, 340, 46), (140, 262, 42)
+    parts = [(FAR_LEG, FAR), (NEAR_LEG, NEAR), (wide, SKIN), (NOSE, SKIN), (HEAD, SKIN)]
+    if not arm:
+        return _drawn(parts, has_lines=style == "lines")
+    if style == "flat":
+        return _drawn([*parts, (arm, FAR)], has_lines=False)
+    image = _drawn([*parts, (arm, SKIN)], has_lines=True, size=3)
+    (x, y, radius), height = arm[0], SIZE[1]
+    over = [SMOOTH * each for each in (x - radius, height - y - 2 * radius, x + radius, height - y)]
+    ImageDraw.Draw(image).ellipse(over, fill=(*SKIN, 255))
+    return image.resize(SIZE, Image.Resampling.LANCZOS)
+
+
 def draw_front(*, has_lines: bool, arms_in_front: bool = False) -> Image.Image:
     """Draw a person from the front, with outlines or in a single colour."""
     arms, trunk = FRONT_ARMS, [FRONT_TRUNK]
@@ -69,7 +87,10 @@ def draw_front(*, has_lines: bool, arms_in_front: bool = False) -> Image.Image:
     return _drawn([(discs, NEAR) for discs in parts], has_lines=has_lines)
 
 
-def _drawn(parts: list[tuple[Discs, tuple[int, int, int]]], *, has_lines: bool) -> Image.Image:
+def _drawn(
+    parts: list[tuple[Discs, tuple[int, int, int]]], *, has_lines: bool, size: int = 1
+) -> Image.Image:
+    """Draw shapes; `size` times as large."""
     width, height = SIZE
     image = Image.new("RGBA", (width * SMOOTH, height * SMOOTH))
     pen = ImageDraw.Draw(image)
@@ -85,7 +106,7 @@ def _drawn(parts: list[tuple[Discs, tuple[int, int, int]]], *, has_lines: bool) 
             fill(shape.buffer(2), INK)
             shape = shape.buffer(-2)
         fill(shape, colour)
-    return image.resize(SIZE, Image.Resampling.LANCZOS)
+    return image.resize((size * width, size * height), Image.Resampling.LANCZOS)
 
 
 def rgba_of(image: Image.Image) -> np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]:

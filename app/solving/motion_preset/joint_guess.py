@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.cut_out import subject_mask, texture
 from app.document import Layer
 from app.rigging import (
     Body,
@@ -12,6 +13,7 @@ from app.rigging import (
     NearLimb,
     bend_straight_legs,
     find_kind,
+    find_near_arm,
     guess_facing,
     guess_kind,
     guess_near_limbs,
@@ -19,6 +21,7 @@ from app.rigging import (
     near_side,
     suggest_joints,
     track_legs,
+    with_near_arm,
     with_shoulders,
     with_tracked_legs,
 )
@@ -61,6 +64,11 @@ def guess_joints(layer: Layer, kind: str, rgba: Bytes | None) -> JointGuess:
         facing = guess_facing(body, joints, loops[0])
         found = guess_near_limbs(loops, joints, rgba, layer.corner)
         joints = name_near_limbs(joints, found, facing)
+        shown = texture(rgba, subject_mask(rgba, layer.cut_out))
+        arm = find_near_arm(loops, joints, facing, shown, layer.corner)
+        if body.name == "biped-side" and arm is not None:
+            joints = with_near_arm(joints, arm, facing)
+            found = tuple(limb for limb in found if not limb.near.startswith("hand"))
         joints = _with_bent_legs(layer, body, joints, facing)
     unsure = (limb.near.rpartition(".")[0] for limb in found if not limb.is_sure)
     ordered = {name: joints[name] for name in body.parents if name in joints}

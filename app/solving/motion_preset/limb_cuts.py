@@ -2,14 +2,24 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from itertools import combinations, product
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
 from app.cut_out import CutLine, CutOut, build_picture_domain, subject_mask, texture
 from app.document import Document, Layer
-from app.rigging import Body, LimbLine, find_arm_line, find_limb_line, near_side, other_side
+from app.rigging import (
+    Body,
+    LimbLine,
+    NearArm,
+    find_arm_line,
+    find_limb_line,
+    move_off_arm,
+    near_side,
+    other_side,
+    trace_near_arm,
+)
 from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.texts import N_
 from engine.arrays import Bytes, Complexes, Floats
@@ -24,6 +34,8 @@ SHARES = (1.0, 0.9, 0.75, 0.6)
 MOUTH = 0.012
 FEWEST = 8  # points of a line
 LEAST = 8.0  # widths of a slit: length of a line above the crotch that covers a limb
+ABOVE = 0.2  # of an arm's length: its contour is looked for this far above its shoulder
+PARTED_ALREADY = 0.5  # share of a contour inside the domain: with less, a slit is there already
 BESIDE = 2.0  # widths of a slit: a handle nearer to a knife line may be inside the slit
 
 
@@ -51,15 +63,42 @@ def find_limb_cuts(
     width = CUT_WIDTH * box_diagonal(layer.domain.outline)
     handles = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
     lines = [_with_straight_mouth(line, layer.domain) for line in lines]
+    arm = _find_near_arm(layer, body, shown)
+    around = [] if arm is None else [CutLine(points=arm.contour - corner, covered="left")]
     free = [line for line in lines if (_distances(handles, line.points) > BESIDE * width).all()]
-    for count in range(len(free), 0, -1):
-        for chosen, share in product(combinations(free, count), SHARES):
-            some = tuple(line.shortened(share) for line in chosen)
-            drawn = tuple(_cut_line(line, layer.corner, LEAST * width) for line in some)
+    choices = [
+        (some, count, share)
+        for some in ([around, []] if around else [[]])
+        for count in range(len(free), -1, -1)
+        for share in (SHARES if count else (1.0,))
+        if some or count
+    ]
+    for some, count, share in choices:
+        for chosen in combinations(free, count):
+            parts = tuple(line.shortened(share) for line in chosen)
+            drawn = *some, *(_cut_line(line, corner, LEAST * width) for line in parts)
             cut_out = replace(layer.cut_out, cut_lines=(*layer.cut_out.cut_lines, *drawn))
             if _is_possible(layer, cut_out, rgba):
-                return LimbCuts(cut_out, _beside(body.joints, some, BESIDE * width))
+                joints = dict(body.joints)
+                if some and arm is not None:
+                    joints = move_off_arm(joints, arm, loops, near_side(body.facing))
+                return LimbCuts(cut_out, _beside(joints, parts, BESIDE * width))
     return None
+
+
+def _find_near_arm(layer: Layer, body: Body, shown: Bytes) -> NearArm | None:
+    """Return the near arm over the trunk that no slit parts yet."""
+    end = f"hand.{near_side(body.facing)}"
+    if body.kind.name != "biped-side" or end not in body.joints:
+        return None
+    limb = np.array([body.joints[name] for name in body.limb_joints(end)])
+    if len(limb) < 3:
+        return None
+    above = limb[0] + ABOVE * np.abs(np.diff(limb)).sum() * np.exp(1j * np.angle(limb[0] - limb[1]))
+    arm = trace_near_arm(layer.domain.loops, np.append(above, limb), shown, layer.corner)
+    if arm is None or layer.domain.contains(arm.contour).mean() < PARTED_ALREADY:
+        return None
+    return arm
 
 
 def part_limbs(document: Document, identity: int, cuts: LimbCuts, rgba: Bytes) -> Document:

@@ -146,12 +146,6 @@ def _require_touching(whole: shapely.Polygon, slits: Sequence[shapely.Geometry])
     """Raise `EngineError` if a slit misses the region, or lies inside and meets no other slit."""
     if not all(shapely.intersects(whole, slit) for slit in slits):
         raise EngineError("The knife's line does not touch the drawing; draw it across an edge.")
-    for piece in shapely.get_parts(shapely.union_all(slits)):
-        if shapely.contains_properly(whole, piece):
-            raise EngineError(
-                "The knife's line begins and ends inside the drawing. Begin it outside, in a "
-                "hole, or at another line."
-            )
 
 
 def _without_strips(
