@@ -107,7 +107,7 @@ def fit_pin_corrections(
         forms, series = resolve(
             lambda times: np.array([unknowns(known_at[time]) for time in times.tolist()]).T,
             tolerance=np.inf,
-            degrees=DEGREES[-1:],
+            degrees=(DEGREE,),
         )
         share = segment.feasible_share(forms[:-2], series, is_kept=is_kept)
     # One share for the whole segment, so that a limit reached for a moment causes no jolt.

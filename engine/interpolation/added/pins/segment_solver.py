@@ -78,7 +78,8 @@ class SegmentSolver:
     def solve(self, time: float) -> PointSolution:
         """Find the smallest correction at a time, from the nearest solved one, without limits."""
         if time not in self._solved:
-            near = min(self._solved, key=lambda other: abs(other - time), default=None)
+            known = [other for other, each in self._solved.items() if each.is_finished]
+            near = min(known, key=lambda other: abs(other - time), default=None)
             start = None if near is None else self._solved[near]
             nodes, targets = self._base_at(time).nodes, self._targets(time)
             self._solved[time] = solve_correction(
@@ -113,7 +114,7 @@ class SegmentSolver:
         keep the limits are solved first, each by itself. The second value tells whether the series
         keeps the limits.
         """
-        times, first, last = chebyshev_times(DEGREE)[1:-1], *(self.solve(t) for t in (0.0, 1.0))
+        times, nothing = chebyshev_times(DEGREE)[1:-1], self._corrector.variables.nothing
         checked = [self._checked(time) for time in chebyshev_times(CHECKED)]
         at_checked = 2 * np.array([each.time for each in checked]) - 1
         shares = chebyshev.chebvander(at_checked, DEGREE) @ to_coefficients(DEGREE)[:, 1:-1]
@@ -126,8 +127,8 @@ class SegmentSolver:
             if is_kept:
                 found = kept
                 break
-        by_time = dict(zip(times, found, strict=True))
-        return {0.0: first, **by_time, 1.0: last}, is_kept
+        at_key = PointSolution(x=nothing, shift=0j, target_errors=np.zeros(0), steps=0)
+        return {0.0: at_key, **dict(zip(times, found, strict=True)), 1.0: at_key}, is_kept
 
     def feasible_share(self, forms: Floats, series: PiecewiseSeries, *, is_kept: bool) -> float:
         """Return the share of a series that keeps the limits, also between the checked times."""

@@ -24,11 +24,13 @@ from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame
 from engine.deform.correction.point_targets import PointTargets
 from engine.deform.correction.solver import PointProblem, PointSolution
+from engine.deform.correction.step_model import StepModel
 
 ROUNDS = 10
 NEAR = 0.02  # distance from a limit from which on a sample takes part
 MARGIN = 0.0005  # slack that is left
 MOST_HOT = 6  # samples that take part at one time
+LONGEST = 1.0  # longest change of h in a round
 RIDGE = 1e-9  # of the mean diagonal of the dual's form
 
 
@@ -72,30 +74,46 @@ def keep_limits(
         for problem, n in zip(problems, nodes, strict=True)
     ]
     models = [problem.step_model(at) for problem, at in zip(problems, states, strict=True)]
-    aims = [at.residual for at in states]
+    aims, h_of = [at.residual for at in states], corrector.variables.at_nodes.h_of
     is_kept = False
-    for _ in range(ROUNDS):
-        x = np.array([at.frame.x for at in states])
-        near = _near_limits(corrector, checked, shares, x)
-        is_kept = bool(near.excess.max(initial=-1.0) <= 0.0)
-        if is_kept:
-            break
-        along = [model.solve_along(near.slopes.T) for model in models]
-        form = sum(
-            np.outer(share, share) * (near.slopes @ change)
-            for share, (change, _) in zip(near.shares.T, along, strict=True)
-        )
-        pushes = _least_pushes(np.asarray(form), near.excess + MARGIN)
-        for j, (problem, model, (change, shift)) in enumerate(
-            zip(problems, models, along, strict=True)
-        ):
-            part = near.shares[:, j] * pushes
-            moved = problem.state(
-                states[j].frame.x - change @ part, states[j].shift - complex(shift @ part)
-            )
-            states[j] = problem.restored(moved, model, aims[j])
+    # Where targets are far out of reach, corrections may grow beyond all numbers.
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        for _ in range(ROUNDS):
+            x = np.array([at.frame.x for at in states])
+            near = _near_limits(corrector, checked, shares, x)
+            is_kept = bool(near.excess.max(initial=-1.0) <= 0.0)
+            if is_kept or not np.isfinite(near.excess).all():
+                break
+            changes = _least_changes(models, near)
+            if changes is None:
+                break
+            longest = max(np.abs(h_of(change)).max() for change, _ in changes)
+            part = min(1.0, LONGEST / longest)
+            for j, (change, shift) in enumerate(changes):
+                at = states[j]
+                moved = problems[j].state(at.frame.x + part * change, at.shift + part * shift)
+                states[j] = problems[j].restored(moved, models[j], aims[j])
     found = [problem.solution(at, 0) for problem, at in zip(problems, states, strict=True)]
     return [replace(each, is_limited=True) for each in found], is_kept
+
+
+def _least_changes(
+    models: Sequence[StepModel], near: _NearLimits
+) -> list[tuple[Floats, complex]] | None:
+    """Return the changes of the unknowns and translations; None if there are none."""
+    along = [model.solve_along(near.slopes.T) for model in models]
+    form = sum(
+        np.outer(share, share) * (near.slopes @ change)
+        for share, (change, _) in zip(near.shares.T, along, strict=True)
+    )
+    pushes = _least_pushes(np.asarray(form), near.excess + MARGIN)
+    if pushes is None:
+        return None
+    parts = near.shares.T * pushes
+    return [
+        (-change @ part, -complex(shift @ part))
+        for part, (change, shift) in zip(parts, along, strict=True)
+    ]
 
 
 def _near_limits(
@@ -114,7 +132,8 @@ def _near_limits(
         grows = over[:, following] > over
         is_peak = ~grows
         is_peak[:, following] &= grows
-        kinds, samples = np.nonzero(is_peak & (over > -NEAR))
+        # Not a number counts as an excess.
+        kinds, samples = np.nonzero((is_peak & (over > -NEAR)) | ~np.isfinite(over))
         hottest = np.argsort(over[kinds, samples])[::-1][:MOST_HOT]
         kinds, samples = kinds[hottest], samples[hottest]
         by_h = each.samples.sign * kept + mixed
@@ -128,10 +147,12 @@ def _near_limits(
     return _NearLimits(np.concatenate(excess), np.vstack(slopes), shares[np.concatenate(owners)])
 
 
-def _least_pushes(form: Floats, excess: Floats) -> Floats:
-    """Return the λ ≥ 0 that minimises ½ λᵀ form λ − excess · λ."""
+def _least_pushes(form: Floats, excess: Floats) -> Floats | None:
+    """Return the λ ≥ 0 that minimises ½ λᵀ form λ − excess · λ; None if it is not found."""
     form = form + RIDGE * np.trace(form) / len(form) * np.eye(len(form))
-    root = np.linalg.cholesky(form)
-    right = np.linalg.solve(root, excess)
-    # ½ |Lᵀ λ − L⁻¹ excess|² is the same but for a constant.
-    return np.asarray(scipy.optimize.nnls(root.T, right)[0])
+    try:
+        root = np.linalg.cholesky(form)
+        # ½ |Lᵀ λ − L⁻¹ excess|² is the same but for a constant.
+        return np.asarray(scipy.optimize.nnls(root.T, np.linalg.solve(root, excess))[0])
+    except (np.linalg.LinAlgError, RuntimeError):  # of many nearly equal samples
+        return None
