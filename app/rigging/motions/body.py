@@ -97,6 +97,13 @@ class Body:
             path.append(self.parents[path[-1]])
         return tuple(name for name in reversed(path) if name)
 
+    def limb_length(self, joint: str) -> float:
+        """Return the length of the arm or the leg of a joint, from its root to its tip."""
+        side = joint[-2:]
+        tips = [f"{tip}{side}" for tip in ("hand", "foot") if f"{tip}{side}" in self.joints]
+        limbs = [names for names in map(self.limb_joints, tips) if joint in names]
+        return self.path_length(limbs[0]) if limbs else 0.0
+
     @property
     def tail(self) -> tuple[str, ...]:
         """The joints of the tail from its base to its tip; only the tip of a tail without bones."""

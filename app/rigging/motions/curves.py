@@ -52,10 +52,11 @@ def bump(share: float) -> float:
     return 64 * inside**3 * (1 - inside) ** 3
 
 
-def covering_curve(heights: Sequence[float]) -> Curve:
-    """Return a smooth curve that is never below these heights at evenly spaced phases."""
-    count = len(heights)
-    width = 2 * (count // 32) + 1
+def covering_curve(heights: Sequence[float], width: int) -> Curve:
+    """Return a smooth curve that is never below these heights at evenly spaced phases.
+
+    `width` is the odd number of heights over which it is smoothed.
+    """
     most = maximum_filter1d(np.asarray(heights), 2 * width + 1, mode="wrap")
     # A mean of the maxima around a phase is at least as high as the value there.
     smooth = uniform_filter1d(uniform_filter1d(most, width, mode="wrap"), width, mode="wrap")

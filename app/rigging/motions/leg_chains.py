@@ -28,9 +28,10 @@ TAIL_SWING, LEADING_SWING = 2.2, 0.9
 TAIL_LAG = 0.25  # of a swing: the tip of a long tail is later than its first bone
 LONGER = 1.3  # ratio of the lengths of arms of which the longer one waves
 NECKLESS = 0.5  # share of the turn that a head without a neck keeps: it bends the whole trunk
+SHORT_ARM = 0.5  # of a leg's length: arms shorter than this swing less
 LEVEL_HEAD = 0.7  # of the trunk's lean, by which the head turns back
-WALKS = 0.5  # of a cycle: a foot stands at least so long in a walk, shorter in a run
-SAMPLES = 96  # of a cycle, at which the lowest position of the hips is searched
+# Of a cycle: the lowest hips are searched at so many, and smoothed over a few; fewer in a run.
+SAMPLES, SMOOTH, SMOOTH_RUN = 96, 7, 5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,7 +95,11 @@ class _LimbInstance(MotionInstance):
         self.timing, self.hips = timing, next(iter(body.joints))
         self.is_first_side = self._prefers_first_side()
         gait = template.gait or STANDING
-        self._step(self._fitted(gait) if WALKS <= gait.stance < 1 else gait)
+        if gait.stance < 1:
+            self.parameters = replace(parameters, size=1.0)  # a larger size asks for more
+            gait = largest_steps(gait, self._largest_turn)
+            self.parameters = parameters
+        self._step(gait)
 
     def _step(self, gait: Gait) -> None:
         """Take the steps of a gait, with the hips as high as the legs reach."""
@@ -104,19 +109,13 @@ class _LimbInstance(MotionInstance):
         if self.steps.legs:
             # Feet are within reach of their legs at all times, so that legs keep their lengths.
             phases = np.arange(SAMPLES) / SAMPLES
-            self.lowered = covering_curve([self._room(phase) for phase in phases.tolist()])
+            heights = [self._room(phase) for phase in phases.tolist()]
+            self.lowered = covering_curve(heights, SMOOTH_RUN if gait.fold else SMOOTH)
 
-    def _fitted(self, gait: Gait) -> Gait:
-        """Return a gait with the largest steps that the drawn legs can do, at size 1."""
-        asked, self.parameters = self.parameters, replace(self.parameters, size=1.0)
-
-        def turn_of(steps: Gait) -> float:
-            self._step(steps)
-            return self.steps.largest_turn(self._trunk_and_arms)
-
-        fitted = largest_steps(gait, turn_of)
-        self.parameters = asked
-        return fitted
+    def _largest_turn(self, gait: Gait) -> float:
+        """Return the largest turn of a leg at its root with the steps of a gait."""
+        self._step(gait)
+        return self.steps.largest_turn(self._trunk_and_arms)
 
     @property
     def stride(self) -> float:
@@ -132,7 +131,7 @@ class _LimbInstance(MotionInstance):
         trunk = {name: turned[name] for name in ("chest", "hips") if name in turned}
         turns |= dict.fromkeys(trunk, next(iter(trunk.values()), 0.0))
         for foot, leg in self.steps.legs.items():
-            places[foot] = self.steps.foot(foot, phase)
+            places[foot] = self.steps.place(foot, phase, lambda at: self._trunk_and_arms(at)[0])
             places |= solve_leg_ik(leg, places[leg.joints[0]], places[foot])
             down = gait.rolled(foot, phase) * self.parameters.size
             turns[foot] = -self.body.facing * math.radians(down)
@@ -152,6 +151,7 @@ class _LimbInstance(MotionInstance):
                     self.steps.gait.straight,
                 )
                 for foot, leg in self.steps.legs.items()
+                if self.steps.is_stretched(foot, phase)
             ),
             default=0.0,
         )
@@ -206,6 +206,9 @@ class _LimbInstance(MotionInstance):
             return self._lean(kept)
         way = self._outwards(name) if has_side else self.body.facing
         amount = self.parameters.size * (1.0 if has_side else self.parameters.energy)
+        if has_side and self.steps.legs:
+            # Short arms, as of dinosaurs, swing less.
+            amount *= min(1.0, self.body.limb_length(name) / (SHORT_ARM * self.reach))
         amount *= NECKLESS if name == "head" and "neck" not in self.body.joints else 1.0
         return way * amount * math.radians(curve(phase - late)) + self._lean(kept)
 

@@ -3,6 +3,7 @@
 import cmath
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -21,10 +22,14 @@ FREE_CLOSING, FREE_OPENING = 0.9, 0.9
 CLOSING, OPENING = 0.03, 0.5
 SAMPLES, TURN_SAMPLES = 48, 24  # of a cycle
 SHORTEST = 0.1  # of a leg's length: shortest step
+SHORTEST_LEG = 0.3  # of a leg's length: shortest distance of a foot from the root of a folded leg
+COMMON = 1.0  # share by which feet of a pair, from the side, are gathered below both their roots
 
 # Radians by which a leg turns at its root from how it is drawn. Beyond, the drawing stretches there
 # to more than 2.5 times its length.
 MOST_TURN = 0.65
+# The same limits for runs: bodies sink more, and legs swing farther, each below its own root.
+LOWERED_RUN, COMMON_RUN, MOST_RUN_TURN = 0.1, 0.5, 0.9
 
 
 def largest_steps(gait: Gait, turn_of: Callable[[Gait], float]) -> Gait:
@@ -33,7 +38,8 @@ def largest_steps(gait: Gait, turn_of: Callable[[Gait], float]) -> Gait:
     `turn_of` returns the largest turn of a leg at its root with the steps of a gait. Legs may turn
     as far as they do without steps, as in a crouch.
     """
-    most, fitted = max(MOST_TURN, turn_of(gait.smaller(0.0))), gait
+    usual = MOST_RUN_TURN if gait.fold else MOST_TURN
+    most, fitted = max(usual, turn_of(gait.smaller(0.0))), gait
     for fitted in gait.smaller_gaits():
         if turn_of(fitted) <= most:
             break
@@ -60,7 +66,8 @@ class FootSteps:
         }
         self.middles = self._middles()
         self.step = gait.stride * gait.stance * self.size * self.reach
-        while self.step > SHORTEST * self.reach and self._most_lowered() > LOWERED:
+        lowered = LOWERED_RUN if gait.fold else LOWERED
+        while self.step > SHORTEST * self.reach and self._most_lowered() > lowered:
             self.step *= SHORTER
         if body.kind.is_side_view and gait.stride:
             self._keep_pairs_open()
@@ -88,9 +95,33 @@ class FootSteps:
 
     def foot(self, foot: str, phase: float) -> complex:
         gait = self.gait
-        ahead = self.body.facing * gait.ahead(foot, phase, self.timing) * self.stride
+        ahead = gait.ahead(foot, phase, self.timing) * self.stride - gait.behind * self.step
         height = gait.lifted(foot, phase) * gait.lift * self.size * self.reach
-        return complex(self.middles[foot] + ahead, self.ground[foot] + height)
+        return complex(self.middles[foot] + self.body.facing * ahead, self.ground[foot] + height)
+
+    def is_stretched(self, foot: str, phase: float) -> bool:
+        """Whether a leg has to reach its foot: in a run only on the ground, up to both ends."""
+        near = (-1 / SAMPLES, 0.0, 1 / SAMPLES)
+        return not self.gait.fold or any(self.gait.stands(foot, phase + by) for by in near)
+
+    def place(
+        self, foot: str, phase: float, places_at: Callable[[float], Mapping[str, complex]]
+    ) -> complex:
+        """Return the place of a foot; a leg that folds swings about its root.
+
+        `places_at` returns the places of the trunk's joints at a phase.
+        """
+        gait, leg = self.gait, self.legs[foot]
+        if not gait.fold or gait.stands(foot, phase):
+            return self.foot(foot, phase)
+        root, share = leg.joints[0], gait.swung(foot, phase)
+        off, down = (self.foot(foot, at) - places_at(at)[root] for at in gait.swing_ends(foot))
+        # Legs point down: angles are measured from there.
+        angle = gait.swing(foot, phase, cmath.phase(1j * off), cmath.phase(1j * down))
+        length = abs(off) + share * (abs(down) - abs(off))
+        length -= self.size * gait.folded(foot, phase) * leg.length
+        length = max(length, SHORTEST_LEG * leg.length)
+        return places_at(phase)[root] - 1j * cmath.rect(length, angle)
 
     def largest_turn(
         self, trunk_at: Callable[[float], tuple[Mapping[str, complex], Mapping[str, float]]]
@@ -99,12 +130,12 @@ class FootSteps:
 
         `trunk_at` returns the places and the rotations of the trunk's joints at a phase.
         """
-        largest, joints = 0.0, self.body.joints
+        largest, joints, trunk_at = 0.0, self.body.joints, cache(trunk_at)
         for phase in (np.arange(TURN_SAMPLES) / TURN_SAMPLES).tolist():
             places, turned = trunk_at(phase)
             for foot, leg in self.legs.items():
                 root, second = leg.joints[:2]
-                tip = self.foot(foot, phase)
+                tip = self.place(foot, phase, lambda at: trunk_at(at)[0])
                 end = solve_leg_ik(leg, places[root], tip).get(second, tip)
                 turn = cmath.phase((end - places[root]) / (joints[second] - joints[root]))
                 trunk = turned.get(self.body.parents[root], 0.0)
@@ -116,8 +147,9 @@ class FootSteps:
         lowered = [0.0]
         for foot, leg in self.legs.items():
             root = self.body.joints[leg.joints[0]]
-            for way in (-1, 1):
-                tip = complex(self.middles[foot] + way * self.step / 2, self.ground[foot])
+            for way in (-0.5, 0.5):
+                ahead = self.body.facing * (way - self.gait.behind) * self.step
+                tip = complex(self.middles[foot] + ahead, self.ground[foot])
                 lowered.append(required_drop(leg, root, tip, self.gait.straight))
         return max(lowered) / self.reach
 
@@ -172,14 +204,15 @@ class FootSteps:
     def _middles(self) -> dict[str, float]:
         """Return the centre of each foot's movement.
 
-        From the side, both feet of a pair are gathered below the middle of their roots.
+        From the side, both feet of a pair are gathered towards the middle of their roots.
         """
         joints, gathered = self.body.joints, self.gait.gathered
+        common = COMMON_RUN if self.gait.fold else COMMON
         middles = {}
         for foot, leg in self.legs.items():
-            rest, roots = joints[foot].real, [joints[leg.joints[0]].real]
+            rest, root = joints[foot].real, joints[leg.joints[0]].real
             other = self.legs.get(other_side(foot))
             if self.body.kind.is_side_view and other is not None:
-                roots.append(joints[other.joints[0]].real)
-            middles[foot] = rest + gathered * (sum(roots) / len(roots) - rest)
+                root += common * (joints[other.joints[0]].real - root) / 2
+            middles[foot] = rest + gathered * (root - rest)
         return middles

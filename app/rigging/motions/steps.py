@@ -26,43 +26,67 @@ class Gait:
 
     stance: float  # share of the cycle that a foot stands
     stride: float  # distance that the body moves in a cycle, in lengths of a leg
-    lift: float  # height of a foot in the middle of its swing, in lengths of a leg
     # Phase at which each foot comes down.
     landings: tuple[tuple[str, float], ...]
+    lift: float = 0.0  # height of a foot in the middle of its swing, in lengths of a leg
     gathered: float = 0.2  # share by which feet move from their drawn places to below the hips
     # Of a leg's length: its largest reach, short of straight, so that the knee does not snap.
     straight: float = 0.985
     is_treadmill: bool = True  # whether, in place, feet slide back on the ground as on a treadmill
     roll: float = 0.0  # degrees by which a foot points down when it leaves the ground
+    # Of a leg's length, by which it is shorter where it is folded most. A leg that folds swings
+    # about its root, as in a run, so that its foot goes along with a body in the air.
+    fold: float = 0.0
+    crest: float = 0.5  # share of its swing after which a leg is folded most
+    # Share of the ground's speed at which a foot leaves the ground, and comes down.
+    follow: float = 1.0
+    behind: float = 0.0  # share of a step by which the middle of a stance is behind the leg's root
 
     def smaller(self, share: float) -> "Gait":
         """Return the gait with a share of its steps."""
-        return replace(self, stride=share * self.stride, lift=share * self.lift)
+        return replace(
+            self, stride=share * self.stride, lift=share * self.lift, fold=share * self.fold
+        )
 
     def smaller_gaits(self) -> Iterator["Gait"]:
         """Yield the gait with smaller and smaller steps: first they are lower, then shorter too."""
-        lift = self.lift
-        while lift > LOWEST_STEP * self.lift:
-            yield replace(self, lift=lift)
-            lift *= SMALLER
-        share = 1.0
+        lower, low = self, 1.0
+        while low > LOWEST_STEP:
+            lower = replace(self, lift=low * self.lift, fold=low * self.fold)
+            yield lower
+            low *= SMALLER
+        share = SMALLER
         while share > SMALLEST:
-            yield replace(self, lift=lift).smaller(share)
+            yield lower.smaller(share)
             share *= SMALLER
 
     def stands(self, foot: str, phase: float) -> bool:
-        return self._swung(foot, phase) == 0.0
+        return self.swung(foot, phase) == 0.0
 
     def lifted(self, foot: str, phase: float) -> float:
         """Return the height of a foot as a share of its greatest height."""
-        return bump(self._swung(foot, phase))
+        return bump(self.swung(foot, phase))
+
+    def folded(self, foot: str, phase: float) -> float:
+        """Return by how much of its length a leg is folded."""
+        return self.fold * bump(self.swung(foot, phase) ** (math.log(0.5) / math.log(self.crest)))
+
+    def swing(self, foot: str, phase: float, start: float, end: float) -> float:
+        """Return a quantity that runs from one value to another as a foot swings."""
+        speed = self.follow * (1 - self.stance) / self.stance
+        return hermite(self.swung(foot, phase), start, end, -speed * (end - start))
+
+    def swing_ends(self, foot: str) -> tuple[float, float]:
+        """Return the phases at which a foot leaves the ground and comes down."""
+        landing = dict(self.landings)[foot]
+        return (landing + self.stance) % 1.0, landing
 
     def rolled(self, foot: str, phase: float) -> float:
         """Return by how many degrees a foot points down; negative, up, before it comes down."""
-        share = self._swung(foot, phase)
+        share = self.swung(foot, phase)
         return self.roll * (bump(share / 0.7) - 0.4 * bump((share - 0.5) / 0.5))
 
-    def _swung(self, foot: str, phase: float) -> float:
+    def swung(self, foot: str, phase: float) -> float:
         """Return the finished share of a foot's swing, 0 while the foot stands."""
         own = (phase - dict(self.landings)[foot]) % 1.0
         is_standing = own <= self.stance + SAME_PHASE or own >= 1 - SAME_PHASE
@@ -75,10 +99,10 @@ class Gait:
         stance = 1.0 if self.stance >= 1 else timing.between(landing, landing + self.stance)
         # The middle of the stance does not depend on the frames of the keys.
         start = self.stance / 2 + (stance - self.stance) / 2
-        swung = self._swung(foot, phase)
+        swung = self.swung(foot, phase)
         if swung == 0.0:
             return start - (own if own <= stance + SAME_PHASE else own - 1)
-        return hermite(swung, start - stance, start, stance - 1)
+        return hermite(swung, start - stance, start, self.follow * (stance - 1))
 
 
 class BodyLeg(NamedTuple):

@@ -46,8 +46,12 @@ def test_motions_come_round_smoothly(name, kind):
     rest = body(kind).joints
     moved = places(name, kind, np.arange(count + 1) / count)
     assert max(np.ptp(np.abs(way - rest[joint])) for joint, way in moved.items()) > 0.02 * SIZE
+    gait = getattr(MOTIONS[name].template_for(kind), "gait", None)
+    is_run = gait is not None and gait.fold > 0
     for joint, way in moved.items():
         assert_allclose(way[-1], way[0], atol=1e-9 * SIZE, err_msg=joint)
+        if is_run and without_side(joint) in {"knee", "foot", "elbow", "hand"}:
+            continue  # feet hit the ground
         speeds = np.diff(np.concatenate([way, way[1:2]])) * count
         # A knee that snaps, or a jump, changes its velocity at once.
         assert np.abs(np.diff(speeds)).max() < 0.1 * max(np.abs(speeds).max(), SIZE), joint
@@ -199,6 +203,76 @@ def test_feet_stand_still_on_the_ground_between_keys_at_whole_frames(name, kind)
             way = after.places[foot] - before.places[foot]
             ground = -performed.stride * (other - one) / frames
             assert_allclose(way, ground, atol=1e-9 * SIZE)
+
+
+def standing_body(kind):
+    """Return a body whose legs are drawn nearly straight below its hips."""
+    rest = body(kind)
+    if kind != "biped-side":
+        return rest
+    legs = {"knee.L": 158 + 97j, "foot.L": 155 + 40j, "knee.R": 155 + 97j, "foot.R": 147 + 40j}
+    return replace(rest, joints={**rest.joints, **legs})
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "least"),
+    [
+        ("run", "biped-side", 0.08),
+        ("run", "biped-front", 0.05),
+        ("trot", "four-legs", 0.04),
+        ("gallop", "four-legs", 0.05),
+    ],
+)
+def test_runs_have_keys_in_the_air_and_hips_are_highest_there(name, kind, least):
+    motion, rest = MOTIONS[name], standing_body(kind)
+    moments = [motion.perform(rest, USUAL).pose_at(phase) for phase in motion.phases]
+    feet = [foot for foot, _ in motion.template_for(kind).gait.landings]
+    leg = rest.limb_length("foot.L")
+    flights = [number for number, each in enumerate(moments) if not each.standing]
+    assert flights == [3, 7]
+    hips = [each.places["hips"].imag for each in moments]
+    for flight in flights:
+        for foot in feet:
+            assert moments[flight].places[foot].imag - rest.joints[foot].imag > least * leg
+        assert hips[flight] == max(hips[flight - 3 : flight + 1])
+    if kind == "biped-side":
+        # Contact, down, push-off and flight. The hips are low after a foot came down until the push
+        # off, for which a long leg needs room.
+        assert max(hips[1], hips[2]) < min(hips[0], hips[3])
+        assert max(hips[5], hips[6]) < min(hips[4], hips[7])
+        assert [each.standing for each in moments[:3]] == 3 * [{"foot.L"}]
+        assert [each.standing for each in moments[4:7]] == 3 * [{"foot.R"}]
+
+
+def test_legs_of_a_run_are_long_at_the_push_off_and_apart_in_the_air():
+    rest = standing_body("biped-side")
+    moments = [MOTIONS["run"].perform(rest, USUAL).pose_at(phase).places for phase in (0.25, 0.375)]
+    hip, leg = rest.limb_joints("foot.L")[0], rest.limb_length("foot.L")
+    push_off, flight = moments
+    assert abs(push_off["foot.L"] - push_off[hip]) > 0.95 * leg
+    assert (push_off["foot.L"] - push_off[hip]).real * rest.facing < -0.2 * leg
+    assert (flight["foot.R"] - flight["foot.L"]).real * rest.facing > 0.4 * leg
+
+
+def test_short_arms_swing_less():
+    rest = body("biped-side")
+    usual = rest.limb_length("hand.L")
+    root = rest.joints[rest.limb_joints("hand.L")[0]]
+    short = {
+        name: root + 0.1 * (place - root) if name.startswith(("elbow", "hand")) else place
+        for name, place in rest.joints.items()
+    }
+    small = replace(rest, joints=short)
+    assert small.limb_length("hand.L") < 0.2 * usual
+    assert small.limb_length("head") == 0.0
+
+    def swing(of):
+        before = of.parents["elbow.L"]
+        moved = places("run", "biped-side", np.arange(8) / 8, of=of)
+        bones = (moved["elbow.L"] - moved[before]) / (of.joints["elbow.L"] - of.joints[before])
+        return np.ptp(np.angle(bones))
+
+    assert swing(small) < 0.4 * swing(rest)
 
 
 def test_parts_of_a_body_are_delayed_by_a_share_of_the_cycle():

@@ -78,40 +78,45 @@ RUN = Motion(
     templates={
         "biped-side": LimbMotion(
             gait=Gait(
-                stance=0.375, stride=1.9, lift=0.18, landings=LEFT_RIGHT, gathered=1.0, roll=45
+                stance=0.25,
+                stride=2.4,
+                landings=LEFT_RIGHT,
+                gathered=1.0,
+                roll=50,
+                fold=0.4,
+                behind=0.2,
+                crest=0.38,
+                follow=0.5,
+                straight=0.995,
             ),
-            rise=Curve(
-                ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
-            ),
+            rise=even_curve(0.0, -0.07, 0.02, 0.08, 0.0, -0.07, 0.02, 0.08),
             turns={
-                "chest": even_curve(-9, -11, -9, -8, -9, -11, -9, -8),
+                "chest": even_curve(-8, -9, -8, -7, -8, -9, -8, -7),
                 "head": even_curve(7, 9, 7, 6, 7, 9, 7, 6),
-                "elbow": even_curve(-21, 0, 21, 0),
-                "hand": even_curve(10, 13, 20, 15),
+                "elbow": even_curve(-30, 0, 30, 0),
+                "hand": even_curve(50, 55, 65, 55),
                 "tail": even_curve(0, 9, 0, -9),
             },
             needed=FEET,
         ),
         "biped-front": LimbMotion(
             gait=Gait(
-                stance=0.375,
-                stride=0.5,
-                lift=0.2,
+                stance=0.25,
+                stride=0.7,
                 landings=LEFT_RIGHT,
                 gathered=0.0,
                 is_treadmill=False,
                 straight=0.997,
+                fold=0.07,
             ),
-            rise=Curve(
-                ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
-            ),
+            rise=even_curve(0.0, -0.02, 0.0, 0.08, 0.0, -0.02, 0.0, 0.08),
             shift=even_curve(0.0, 0.04, 0.04, 0.0, -0.04, -0.04),
             turns={
                 "hips": even_curve(0, -3, -3, 0, 3, 3),
                 "chest": even_curve(0, -1, -1, 0, 1, 1),
                 "head": even_curve(0, 3, 3, 0, -3, -3),
-                "elbow": even_curve(-4, 8, 22, 8),
-                "hand": even_curve(6, 14, 28, 16),
+                "elbow": even_curve(-10, -1, 8, -1),
+                "hand": even_curve(5, 15, 30, 15),
                 "tail": even_curve(0, 9, 0, -9),
             },
             needed=FEET,
