@@ -45,12 +45,29 @@ class BodyPlan:
         self.high = complex(outline.real.max(), outline.imag.max())
         self.tall, self.wide = (self.high - self.low).imag, (self.high - self.low).real
         self.legs, ends = self._legs(), list(self.anatomy.branches)
-        if len(self.legs) < 2 and pair_legs(tracked):
+        if len(self.legs) < 2 and pair_legs(tracked) and not self.is_mirrored:
             self.legs = self._legs_between_lines(tracked)
             lowest = min(leg.root.imag for leg in tracked)
             ends = [end for end in ends if self.places[end].imag > lowest]
         standing = {int(leg.path[-1]) for leg in self.legs}
         self.others = [end for end in ends if end not in standing]
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether the shape is upright and its own mirror image, as bodies from the front are."""
+        return self.tall > self.wide and self._symmetry_about(self.middle) >= SYMMETRIC
+
+    @property
+    def has_half_a_pair(self) -> bool:
+        """Whether one of two mirrored legs was found: a single one, beside the middle."""
+        if len(self.legs) != 1 or not self.is_mirrored:
+            return False
+        ankle = self.legs[0].ankle
+        return bool(abs(self.places[ankle].real - self.middle) > self.radii[ankle])
+
+    @property
+    def middle(self) -> float:
+        return (self.low.real + self.high.real) / 2
 
     def between(self, start: int, end: int) -> Indices:
         _, before = self.anatomy.skeleton.path_distances([start])

@@ -16,6 +16,7 @@ from app.rigging.anatomy.chain import (
     suggest_chain_joints,
 )
 from app.rigging.anatomy.legs import PlannedLeg, TrackedLeg
+from app.rigging.motions.body import other_side
 from app.rigging.motions.kinds import BodyKind
 from engine.arrays import Complexes
 from engine.geometry import contains
@@ -71,6 +72,8 @@ def suggest_joints(
     else:
         is_frontal = kind.name == "biped-front"
         found = _standing(plan, is_frontal=is_frontal, has_arm_lines=has_arm_lines)
+        if is_frontal and plan.has_half_a_pair:
+            found |= _missing_limbs(found, plan.middle)
     places = np.array(list(found.values()), dtype=np.complex128)
     inside = contains(loops[0], places, holes=loops[1:])
     nodes = plan.places[plan.anatomy.kept]
@@ -169,6 +172,15 @@ def _sides(
         f"{name}.{side}": place
         for side, limb in by_side.items()
         for name, place in zip(names, limb, strict=True)
+    }
+
+
+def _missing_limbs(found: Mapping[str, complex], middle: float) -> dict[str, complex]:
+    """Return limbs of one side only, as short legs may be, mirrored about an upright line."""
+    return {
+        other_side(name): 2 * middle - place.conjugate()
+        for name, place in found.items()
+        if other_side(name) not in found
     }
 
 

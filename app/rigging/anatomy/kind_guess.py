@@ -32,6 +32,8 @@ def _kind(plan: BodyPlan) -> BodyKind:
         return find_kind("four-legs")
     if count > 1:
         return find_kind("biped-front" if _is_frontal(plan) else "biped-side")
+    if plan.has_half_a_pair and plan.is_upright:
+        return find_kind("biped-front")
     is_long = is_chain(plan)
     # The low part of a fish is a fin.
     stands = count == 1 and abs(plan.toes[0]) > FOOT and plan.is_upright

@@ -237,6 +237,32 @@ def test_a_tail_that_leans_on_the_ground_is_no_leg_though_lines_part_it():
     assert with_tracked_legs(joints, find_kind("biped-side"), legs, 1) == joints
 
 
+def test_two_legs_in_one_branch_of_the_silhouette_are_no_tail_but_the_legs():
+    legs = [TrackedLeg(at + 270j, at + 180j, at + 100j) for at in (340.0, 385.0)]
+    joints = {"hips": 362 + 364j, "tail.1": 362 + 219j, "tail.2": 361 + 117j, "tail": 300 + 70j}
+    found = with_tracked_legs(joints, find_kind("biped-side"), legs, -1)
+    assert found["foot.L"] == legs[0].foot
+    assert found["foot.R"] == legs[1].foot
+    assert not any(name.startswith("tail") for name in found)
+    # A tail that begins above the legs stays.
+    high = {**joints, "tail.1": 362 + 300j}
+    assert "tail" in with_tracked_legs(high, find_kind("biped-side"), legs, -1)
+
+
+def test_an_upright_mirrored_body_has_both_short_feet_and_lines_part_no_four_legs():
+    body = [([200j, 460j], 340), dot(660j, 240)]
+    feet = [([at * 70 + 60j, at * 120 + 40j], 60) for at in (-1, 1)]
+    flippers = [([at * 150 + 470j, at * 215 + 350j, at * 235 + 260j], 60) for at in (-1, 1)]
+    loops = drawn(*body, *feet, *flippers)
+    lines = [TrackedLeg(at + 500j, at + 350j, at + 150j) for at in (-110.0, 0.0, 110.0)]
+    assert guess_kind(loops, lines).name == "biped-front"
+    joints = suggest_joints(loops, find_kind("biped-front"), lines)
+    for limb in ("foot", "hand"):
+        left, right = joints[f"{limb}.L"], joints[f"{limb}.R"]
+        assert left.real > 50
+        assert abs(left + right.conjugate()) < 40
+
+
 def test_a_long_thin_tail_has_a_chain_from_its_base_outside_the_body():
     horse = drawn(*HORSE, ([-150 + 210j, -300 + 150j, -420 + 170j], 24))
     joints = suggested(horse, "four-legs")

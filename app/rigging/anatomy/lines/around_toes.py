@@ -13,6 +13,7 @@ from app.rigging.anatomy.lines.limb_strips import Strips, resample_line
 from engine.arrays import Booleans, Complexes, Floats, Indices
 
 INK = 0.5  # evidence of a line
+LEVEL = 2  # samples aside and up: the outline rises less between them
 EACH, FREE = 0.05, 0.01  # costs of a step, beside 1 in paint, and in background
 ROUNDING = 2.0  # samples over which the line is rounded
 STEADY = 15  # samples over which the move beyond the ink is steady, more than a line is wide
@@ -53,9 +54,13 @@ def lead_round_toes(strips: Strips, instep: int, offset: float, usual: float) ->
 
 
 def _mark_ground(strips: Strips) -> Booleans:
-    """Mark what is outside the outline, and not in its holes."""
+    """Mark what is just below the outline, where it is rather level, and not in its holes."""
     parts, _ = ndimage.label(~strips.inside)
-    return np.asarray((parts == parts[0, 0]) & (parts > 0), np.bool_)
+    is_below: Booleans = (parts == parts[0, 0]) & (parts > 0)
+    is_below &= np.roll(strips.inside, -1, axis=0)
+    for aside in (-LEVEL, LEVEL):
+        is_below &= np.roll(strips.inside, (-LEVEL, aside), axis=(0, 1))
+    return is_below
 
 
 def _steps(costs: Floats) -> scipy.sparse.csr_array:

@@ -132,8 +132,11 @@ def find_limb_line(
     while first > 0 and apart[first].sum() < OPEN * samples:
         first -= 1
     is_left = (strips.across[first] / (strips.axis[first + 1] - strips.axis[first])).imag > 0
-    toes = lead_round_toes(strips, instep, float(smooth[instep]), usual)
-    points = np.concatenate([toes, strips.place(rows[instep : last + 1], smooth)])
+    low = strips.place(rows[first:instep], smooth)
+    if not may_be_behind:
+        toes = lead_round_toes(strips, instep, float(smooth[instep]), usual)
+        low = toes if len(toes) else low
+    points = np.concatenate([low, strips.place(rows[max(first, instep) : last + 1], smooth)])
     branch = strips.place(rows[crotch : crotch + 1], smooth)
     return LimbLine(
         points=points,

@@ -13,7 +13,7 @@ from engine.geometry import arc_lengths, shapely_region
 FINEST = 800  # samples of the picture's longer side
 # Shares of the limb's length: rounding of its axis at the knee, its parts sampled beyond its end
 # and above its root, and width of the strips.
-ROUNDING, BEYOND, ABOVE, WIDE = 0.06, 0.35, 0.15, 0.75
+ROUNDING, BEYOND, ABOVE, WIDE = 0.06, 0.6, 0.15, 0.75
 # Largest width of a line as a share of the picture's longer side; contrasts, as shares of the
 # brightness and in levels, that count fully.
 LINE, DARK, LEVELS = 0.02, 0.2, 40.0

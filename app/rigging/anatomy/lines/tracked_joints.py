@@ -13,6 +13,8 @@ FRONT_LEG = ("shoulder", "elbow", "hand")
 # A foot in a tail: the length of the tail over that of the leg, at least, and the foot's distance
 # from the tail's middle in lengths of it, at most.
 LONG_TAIL, IN_TAIL = 0.6, 0.1
+# Of a leg's length: how far below its root two legs seem a tail, whose tip is so near to a foot.
+LOW_TAIL, FOOT = 0.15, 0.6
 PELVIS = 0.22  # of a leg's length: height of the hips above the roots of both legs
 
 
@@ -29,6 +31,8 @@ def with_tracked_legs(
             return dict(joints)
         hind, front = pairs if facing > 0 else pairs[::-1]
         return _placed(joints, {LEG: hind, FRONT_LEG: front}, facing)
+    if kind.is_side_view:
+        joints = _without_low_tail(joints, legs)
     legs = [leg for leg in legs if not _is_tail(leg, joints)]
     if len(legs) != 2 or not kind.name.startswith("biped"):
         return dict(joints)
@@ -40,6 +44,21 @@ def with_tracked_legs(
         long = float(np.mean([abs(leg.root - leg.foot) for leg in legs]))
         found["hips"] = sum(roots) / len(roots) + 1j * PELVIS * long
     return found
+
+
+def _without_low_tail(
+    joints: Mapping[str, complex], legs: Sequence[TrackedLeg]
+) -> Mapping[str, complex]:
+    """Return joints without a tail that is two legs, which the silhouette joins."""
+    tail = [name for name in joints if name.startswith("tail")]
+    if len(legs) != 2 or not tail:
+        return joints
+    start, tip = joints[tail[0]], joints[tail[-1]]
+    for leg in legs:
+        long = abs(leg.root - leg.foot)
+        if start.imag >= leg.root.imag - LOW_TAIL * long or abs(tip - leg.foot) > FOOT * long:
+            return joints
+    return {name: at for name, at in joints.items() if name not in tail}
 
 
 def _is_tail(leg: TrackedLeg, joints: Mapping[str, complex]) -> bool:
