@@ -44,6 +44,7 @@ class BodyPlan:
         self.low = complex(outline.real.min(), outline.imag.min())
         self.high = complex(outline.real.max(), outline.imag.max())
         self.tall, self.wide = (self.high - self.low).imag, (self.high - self.low).real
+        self.middle = (self.low.real + self.high.real) / 2
         self.legs, ends = self._legs(), list(self.anatomy.branches)
         if len(self.legs) < 2 and pair_legs(tracked) and not self.is_mirrored:
             self.legs = self._legs_between_lines(tracked)
@@ -62,12 +63,8 @@ class BodyPlan:
         """Whether one of two mirrored legs was found: a single one, beside the middle."""
         if len(self.legs) != 1 or not self.is_mirrored:
             return False
-        ankle = self.legs[0].ankle
-        return bool(abs(self.places[ankle].real - self.middle) > self.radii[ankle])
-
-    @property
-    def middle(self) -> float:
-        return (self.low.real + self.high.real) / 2
+        tip = self.legs[0].path[-1]
+        return bool(abs(self.places[tip].real - self.middle) > self.radii[tip])
 
     def between(self, start: int, end: int) -> Indices:
         _, before = self.anatomy.skeleton.path_distances([start])

@@ -251,7 +251,7 @@ def test_two_legs_in_one_branch_of_the_silhouette_are_no_tail_but_the_legs():
 
 def test_an_upright_mirrored_body_has_both_short_feet_and_lines_part_no_four_legs():
     body = [([200j, 460j], 340), dot(660j, 240)]
-    feet = [([at * 70 + 60j, at * 120 + 40j], 60) for at in (-1, 1)]
+    feet = [([at * 70 + 40j, at * 130 - 10j], 60) for at in (-1, 1)]
     flippers = [([at * 150 + 470j, at * 215 + 350j, at * 235 + 260j], 60) for at in (-1, 1)]
     loops = drawn(*body, *feet, *flippers)
     lines = [TrackedLeg(at + 500j, at + 350j, at + 150j) for at in (-110.0, 0.0, 110.0)]
