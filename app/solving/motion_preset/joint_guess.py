@@ -1,11 +1,12 @@
 """The kind and the joints of a layer, guessed from its shape and its picture."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from app.cut_out import subject_mask, texture
+from app.cut_out import build_picture_domain, subject_mask, texture
 from app.document import Layer
 from app.rigging import (
     Body,
@@ -17,6 +18,7 @@ from app.rigging import (
     guess_facing,
     guess_kind,
     guess_near_limbs,
+    move_off_arm,
     name_near_limbs,
     near_side,
     suggest_joints,
@@ -28,6 +30,7 @@ from app.rigging import (
 from engine.arrays import Bytes, Complexes
 from engine.geometry import diameter
 
+FEWEST_TRIANGLES = 1_000  # of a domain of which only the outline is used
 APART = 0.01  # of the drawing's diameter: joints that would meet are moved this far apart
 
 
@@ -43,13 +46,13 @@ class JointGuess(NamedTuple):
 
 def guess_layer_kind(layer: Layer, rgba: Bytes | None) -> BodyKind:
     """Return the kind of body that a layer looks like."""
-    loops = layer.domain.loops
+    loops = _find_loops(layer, rgba)
     return guess_kind(loops, () if rgba is None else track_legs(loops, rgba, layer.corner))
 
 
 def guess_joints(layer: Layer, kind: str, rgba: Bytes | None) -> JointGuess:
     """Return the joints of a kind of body in a layer: by the outline, and lines in the picture."""
-    body, loops = find_kind(kind), layer.domain.loops
+    body, loops = find_kind(kind), _find_loops(layer, rgba)
     if rgba is None or "foot.L" not in body.parents:
         return JointGuess(suggest_joints(loops, body))
     legs = track_legs(loops, rgba, layer.corner)
@@ -68,11 +71,26 @@ def guess_joints(layer: Layer, kind: str, rgba: Bytes | None) -> JointGuess:
         arm = find_near_arm(loops, joints, facing, shown, layer.corner)
         if body.name == "biped-side" and arm is not None:
             joints = with_near_arm(joints, arm, facing)
+            joints = move_off_arm(joints, arm, loops, near_side(facing))
             found = tuple(limb for limb in found if not limb.near.startswith("hand"))
         joints = _with_bent_legs(layer, body, joints, facing)
     unsure = (limb.near.rpartition(".")[0] for limb in found if not limb.is_sure)
     ordered = {name: joints[name] for name in body.parents if name in joints}
     return JointGuess(ordered, tuple(f"{end}.{near_side(facing)}" for end in unsure))
+
+
+def _find_loops(layer: Layer, rgba: Bytes | None) -> tuple[Complexes, ...]:
+    """Return the loops of a layer without the slits that part limbs, which its picture shows."""
+    lines = tuple(line for line in layer.cut_out.cut_lines if line.covered == "none")
+    if rgba is None or len(lines) == len(layer.cut_out.cut_lines):
+        return layer.domain.loops
+    domain, _ = build_picture_domain(
+        rgba,
+        triangles=FEWEST_TRIANGLES,
+        detail=layer.meshing.detail,
+        cut_out=replace(layer.cut_out, cut_lines=lines),
+    )
+    return domain.moved(layer.corner).loops
 
 
 def _with_bent_legs(

@@ -22,7 +22,7 @@ from app.solving import (
     rig_body,
     start_motion_solve,
 )
-from app.solving.motion_preset.joint_guess import guess_joints
+from app.solving.motion_preset.joint_guess import guess_joints, guess_layer_kind
 from app.solving.motion_preset.limb_cuts import part_limbs
 from app.storage import open_picture
 
@@ -61,6 +61,15 @@ def test_arm_is_a_flap_that_covers_the_trunk_and_a_chain_in_front(rigged):
     assert {"shoulder.R", "elbow.R", "hand.R"} <= joints.keys()
     assert layer.handle(joints["hand.R"]).depth > 0
     assert any(bone.is_between((joints["elbow.R"], joints["hand.R"])) for bone in layer.bones)
+
+
+def test_guess_is_the_same_when_the_limbs_are_parted_already(drawn, rigged):
+    document, rgba, _ = drawn
+    before, after = document.layer(0), rigged[0].layer(0)
+    assert guess_layer_kind(after, rgba) == guess_layer_kind(before, rgba)
+    one, other = (guess_joints(layer, "biped-side", rgba).joints for layer in (before, after))
+    assert one.keys() == other.keys()
+    assert max(abs(one[name] - other[name]) for name in one) < 3
 
 
 def test_trunk_is_whole_and_still_when_the_hand_is_dragged(drawn, rigged):
