@@ -29,7 +29,7 @@ COMMON = 1.0  # share by which feet of a pair, from the side, are gathered below
 # to more than 2.5 times its length.
 MOST_TURN = 0.65
 # The same limits for runs: bodies sink more, and legs swing farther, each below its own root.
-LOWERED_RUN, COMMON_RUN, MOST_RUN_TURN = 0.1, 0.5, 0.9
+LOWERED_RUN, COMMON_RUN, MOST_RUN_TURN = 0.1, 0.5, 1.0
 
 
 def largest_steps(gait: Gait, turn_of: Callable[[Gait], float]) -> Gait:
