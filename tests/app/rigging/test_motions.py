@@ -451,3 +451,16 @@ def test_steps_are_as_large_as_legs_can_turn():
     # Whoever asks for more gets more.
     assert swing(1.3)[1] > step
     assert swing(0.5)[1] == pytest.approx(step / 2, rel=1e-6)
+
+
+def test_a_thick_chain_bends_less_where_its_links_meet():
+    joints = {f"joint.{number + 1}": complex(100 * number) for number in range(4)}
+    bends = []
+    for half_width in (5.0, 100.0, 200.0):
+        box = (complex(-50, -half_width), complex(350, half_width))
+        chain = Body(kind=find_kind("chain"), joints=joints, box=box)
+        moved = places("slither", "chain", np.linspace(0, 1, 33), of=chain)
+        links = np.diff(np.array([moved[name] for name in joints]), axis=0)
+        bends.append(np.abs(np.angle(links[1:] / links[:-1])).max())
+    assert bends[0] > 0.6
+    assert_allclose(bends[1:], [0.3, 0.15], rtol=0.02)
