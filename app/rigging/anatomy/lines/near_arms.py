@@ -39,6 +39,8 @@ COARSE, FINE = 420, 1200  # samples of the picture's longer side
 # Rays on a side, rays around the hand, and samples along a ray, in the search and at last.
 SEARCHED, TRACED = (16, 7, 26), (60, 21, 90)
 STRETCHED = (0.0, 0.12, 0.3)  # shares by which axes are made longer at the hand, in turn
+LESS_CLEAR = 0.04  # than the clearest contour, at most
+HAND = 0.06  # of an arm's length: contours that end this near to each other reach equally far
 RESTRETCHED = (-0.1, -0.05, 0.0, 0.06)  # the same for a known axis
 CENTRED = 3  # times that an axis is centred
 BEST = 6  # guesses that are centred
@@ -134,8 +136,12 @@ def trace_near_arm(
     ways = np.concatenate([stretch_axes(ways, share) for share in RESTRETCHED])
     found = _trace(fine, ways, TRACED)
     found = found.joined(_trace(fine, found.centred(), TRACED))
-    found = found.best(found.clearness(), 1)
-    is_sure = found.clearness()[0] >= SURE and found.slenderness()[0] >= SLENDER
+    # A line across the arm, as at the wrist, does not end it: the clearest of those that reach far.
+    clearness, reach = found.clearness(), np.abs(found.axes[:, -1] - ways[0, 0])
+    is_clear = clearness >= clearness.max() - LESS_CLEAR
+    is_far = reach >= reach[is_clear].max() - HAND * reach.mean()
+    found = found.best(np.where(is_clear & is_far, clearness, -np.inf), 1)
+    is_sure = clearness.max() >= SURE and found.slenderness()[0] >= SLENDER
     return _placed(found, fine, loops) if is_sure else None
 
 
