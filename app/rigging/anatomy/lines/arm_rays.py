@@ -9,12 +9,17 @@ import numpy as np
 import numpy.typing as npt
 from scipy import ndimage
 
+from app.rigging.anatomy.lines.ink_paths import (
+    LINE,
+    find_cheapest_paths,
+    mark_ink,
+    width_of_lines,
+)
 from engine.arrays import Booleans, Bytes, Complexes, Floats, Indices
 from engine.geometry import arc_lengths
 
-# Largest width of a line as a share of the picture's longer side; contrasts, as shares of the
-# brightness and in levels per sample, that count fully; weight of a change of colour beside ink.
-LINE, DARK, LEVELS, EDGE = 0.02, 0.2, 20.0, 0.9
+# Contrast in levels per sample that counts fully; weight of a change of colour beside ink.
+LEVELS, EDGE = 20.0, 0.9
 OPAQUE = 0.5  # least opacity of the drawing
 SOFT = 0.7  # samples: blur of changes of colour
 BESIDE = 1.5  # samples beyond the ink of the drawing's edge, in which no line is looked for
@@ -81,20 +86,15 @@ class ArmRaster(NamedTuple):
 def _find_lines(colours: Floats, drawn: Booleans) -> tuple[Floats, Floats]:
     """Return the ink, and the evidence of lines inside the drawing."""
     # Light outside, the drawing's edge counts as a line, too.
-    ink, at_edge = (_find_ink(np.where(drawn, colours.mean(axis=2), each)) for each in (0.0, 255.0))
+    wide = width_of_lines(max(drawn.shape))
+    ink, at_edge = (
+        mark_ink(np.where(drawn, colours.mean(axis=2), each), (wide, wide)) for each in (0.0, 255.0)
+    )
     blurred = [ndimage.gaussian_gradient_magnitude(colours[..., k], SOFT) for k in range(3)]
     evidence = np.maximum(ink, EDGE * np.clip(np.max(blurred, axis=0) / LEVELS, 0.0, 1.0))
     depth = ndimage.distance_transform_edt(np.pad(drawn, 1))[1:-1, 1:-1]
     evidence[depth <= _width_of_edge(at_edge, depth) + BESIDE] = 0.0
     return ink, np.asarray(evidence, np.float64)
-
-
-def _find_ink(brightness: Floats) -> Floats:
-    """Return how much darker lines are than what is on both sides, from 0 to 1."""
-    size = 2 * int(np.ceil(LINE * max(brightness.shape) / 2)) + 1
-    around = ndimage.grey_closing(brightness, size=(size, size))
-    darker = (around - brightness) / (DARK * np.maximum(around, 1.0))
-    return np.asarray(np.clip(darker, 0.0, 1.0), np.float64)
 
 
 def _width_of_edge(ink: Floats, depth: Floats) -> float:
@@ -246,26 +246,7 @@ def trace_contours(raster: ArmRaster, axes: Complexes, *, around: int, radii: in
     crossed = np.pad(np.cumsum(evidence, axis=2), ((0, 0), (0, 0), (line, 0)))[..., :-line]
     costs = 1.0 - evidence + CROSSED * np.minimum(crossed, 1.0) + FORBIDDEN * (is_out & ~is_exit)
     costs[..., :line] += FORBIDDEN
-    offsets = _find_paths(costs)
+    offsets = find_cheapest_paths(costs, STEEPEST, SLOPE)
     at = offsets[..., None]
     seen, is_edge = (np.take_along_axis(each, at, axis=2)[..., 0] for each in (evidence, is_exit))
     return ArmContours(axes, starts, steps, offsets, seen, is_edge)
-
-
-def _find_paths(costs: Floats) -> Indices:
-    """Return the sample of each ray (c, r) on the cheapest paths through costs (c, r, k)."""
-    moves = np.arange(-STEEPEST, STEEPEST + 1)
-    total = costs[:, 0]
-    choices = np.zeros(costs.shape, dtype=np.intp)
-    for ray in range(1, costs.shape[1]):
-        padded = np.pad(total, ((0, 0), (STEEPEST, STEEPEST)), constant_values=np.inf)
-        windows = np.lib.stride_tricks.sliding_window_view(padded, costs.shape[2], axis=1)
-        options = windows + SLOPE * np.abs(moves)[:, None]
-        choices[:, ray] = options.argmin(axis=1)
-        total = options.min(axis=1) + costs[:, ray]
-    path = np.zeros(costs.shape[:2], dtype=np.intp)
-    path[:, -1] = total.argmin(axis=1)
-    rows = np.arange(len(costs))
-    for ray in range(costs.shape[1] - 1, 0, -1):
-        path[:, ray - 1] = path[:, ray] + moves[choices[rows, ray, path[:, ray]]]
-    return path

@@ -11,12 +11,11 @@ import numpy as np
 from scipy import ndimage
 
 from app.rigging.anatomy.legs import TrackedLeg
+from app.rigging.anatomy.lines.ink_paths import mark_ink, width_of_lines
 from engine.arrays import Booleans, Bytes, Complexes, Floats
 from engine.geometry import arc_lengths, crossings_at, distance_to_segments
 
 ROWS = 400  # of the raster: its longer side, at most twice as many
-# Largest width of a line as a share of the longer side, and its least contrast to what it parts.
-LINE, CONTRAST = 0.02, 0.2
 OPAQUE = 128.0  # least level of opacity of the drawing
 SOFT, SHARP = 1.0, 8.0  # changes of colour: blur in cells, least levels per cell
 LEAST_RUN = 0.01  # of the longer side
@@ -177,11 +176,8 @@ def _rasterize(
 
 def _mark_lines(inside: Booleans, colours: Floats) -> Booleans:
     """Mark lines darker than the colour on both sides."""
-    brightness = colours.mean(axis=2)
-    size = 2 * int(np.ceil(LINE * max(inside.shape) / 2)) + 1
-    around = ndimage.grey_closing(brightness, size=(size, size))
-    is_line: Booleans = around - brightness > CONTRAST * around
-    return is_line
+    wide = width_of_lines(max(inside.shape))
+    return np.asarray(mark_ink(colours.mean(axis=2), (wide, wide)) >= 1, np.bool_)
 
 
 def _mark_changes(inside: Booleans, colours: Floats) -> Booleans:

@@ -12,6 +12,7 @@ import shapely
 from scipy import ndimage
 
 from app.rigging.anatomy.lines.around_toes import lead_round_toes
+from app.rigging.anatomy.lines.ink_paths import find_cheapest_paths
 from app.rigging.anatomy.lines.limb_strips import (
     ABOVE,
     BEYOND,
@@ -196,22 +197,10 @@ def _find_edge(strips: Strips, row: int, edge: int) -> int:
 
 def _find_path(strips: Strips, allowed: Booleans) -> Indices:
     """Return the sample of each row through which the cheapest path leads."""
-    count, width = allowed.shape
+    width = allowed.shape[1]
     costs = 1 - strips.evidence + FAR * np.arange(width) / width
     costs = np.where(allowed, np.where(strips.drawn, costs, 0.0), FORBIDDEN)
-    moves = np.arange(-STEEPEST, STEEPEST + 1)
-    total, choices = costs[0], np.zeros((count, width), dtype=np.intp)
-    for row in range(1, count):
-        padded = np.pad(total, STEEPEST, constant_values=np.inf)
-        windows = np.lib.stride_tricks.sliding_window_view(padded, width)
-        options = windows + SLOPE * np.abs(moves)[:, None]
-        choices[row] = options.argmin(axis=0)
-        total = options.min(axis=0) + costs[row]
-    path = np.zeros(count, dtype=np.intp)
-    path[-1] = total.argmin()
-    for row in range(count - 1, 0, -1):
-        path[row - 1] = path[row] + moves[choices[row, path[row]]]
-    return path
+    return np.asarray(find_cheapest_paths(costs[None], STEEPEST, SLOPE)[0], np.intp)
 
 
 def _find_end(seen: Booleans, first: int, root: int, gap: int) -> int:

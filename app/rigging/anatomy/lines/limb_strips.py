@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from scipy import ndimage
 
+from app.rigging.anatomy.lines.ink_paths import mark_ink, width_of_lines
 from engine.arrays import Booleans, Bytes, Complexes, Floats, Indices
 from engine.geometry import arc_lengths, shapely_region
 
@@ -14,9 +15,7 @@ FINEST = 800  # samples of the picture's longer side
 # Shares of the limb's length: rounding of its axis at the knee, its parts sampled beyond its end
 # and above its root, and width of the strips.
 ROUNDING, BEYOND, ABOVE, WIDE = 0.06, 0.6, 0.15, 0.75
-# Largest width of a line as a share of the picture's longer side; contrasts, as shares of the
-# brightness and in levels, that count fully.
-LINE, DARK, LEVELS = 0.02, 0.2, 40.0
+LEVELS = 40.0  # contrast that counts fully
 EDGE = 0.7  # weight of a change of colour beside ink
 OPAQUE = 0.5  # least opacity of the drawing
 
@@ -73,21 +72,12 @@ def sample_strips(
     drawn = inside & (opacity >= OPAQUE)
     colours = np.where(drawn[..., None], colours, 255.0)
     brightness = colours.mean(axis=2)
-    size = 2 * int(np.ceil(LINE * longer / step / 2)) + 1
-    ink, marks = (_mark_ink(brightness, (high, size)) for high in (1, size))
+    wide = width_of_lines(longer / step)
+    ink, marks = (mark_ink(brightness, (high, wide)) for high in (1, wide))
     change, along = (_measure_change(colours, axis) for axis in (1, 0))
     evidence = np.maximum(ink, EDGE * np.clip(change / LEVELS, 0.0, 1.0))
     traces = np.maximum.reduce([evidence, marks, EDGE * np.clip(along / LEVELS, 0.0, 1.0)])
     return Strips(axis, across, step, inside, drawn, ink, marks, evidence, traces)
-
-
-def _mark_ink(brightness: Floats, size: tuple[int, int]) -> Floats:
-    """Return how much darker samples are than what is around them, as far as counts, from 0 to 1.
-
-    Lines are narrower than the size.
-    """
-    around = ndimage.grey_closing(brightness, size=size)
-    return np.clip((around - brightness) / (DARK * np.maximum(around, 1.0)), 0.0, 1.0)
 
 
 def _measure_change(colours: Floats, axis: int) -> Floats:
