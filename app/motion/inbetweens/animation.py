@@ -1,5 +1,7 @@
 """The motion of a clip at any frame, for exports, attachments and checks."""
 
+from typing import Self
+
 from app.document import Clip, Variant
 from app.motion.inbetweens.frame_corrector import FrameCorrector, needs_correction
 from app.motion.inbetweens.keyframe_motion import KeyframeMotion
@@ -51,6 +53,13 @@ class Animation:
         if self._corrections is None and self._is_corrected:
             self._corrections = FrameCorrector(self.clip, self.variant, self.sampler, self.carried)
         return self._corrections
+
+    def at_points(self, points: Complexes) -> Self:
+        """Return the same motion at other points (m,); corrections are computed once for both."""
+        sampler = PoseSampler(self.clip.layer, points=points, sibling=self.sampler)
+        other = type(self)(self.clip, self.variant, sampler=sampler, carried=self.carried)
+        other._corrections = self.corrections  # noqa: SLF001 - its own
+        return other
 
     def positions(self, frame: float) -> Complexes:
         """Return the positions (m,) at a frame, possibly fractional."""

@@ -74,6 +74,7 @@ class ParentTransforms:
             if points
         }
         self._siblings = siblings
+        self._animations: dict[int, Animation] = {}
         self._placements: dict[tuple[int, float, bool], Similarity] = {}
         self._turns: dict[tuple[int, float, bool], Turns] = {}
         self._kept: dict[tuple[int, Attachment, int], Similarity] = {}
@@ -221,9 +222,12 @@ class ParentTransforms:
         return pivot_frame_at(found.positions[index], found.fz[index])
 
     def animation(self, layer: int, points: Complexes) -> Animation:
-        """Return the motion of points (m,) of a layer in the layer's space."""
+        """Return the motion of points (m,) of a layer; its springs and pins are solved once."""
+        if layer in self._animations:
+            return self._animations[layer].at_points(points)
         carried = partial(self.parent_transform, layer)
-        return layer_animation(self.document, layer, points, self._siblings, carried)
+        made = layer_animation(self.document, layer, points, self._siblings, carried)
+        return self._animations.setdefault(layer, made)
 
     def advance(self) -> "ParentTransforms":
         """Compute some frames in advance."""

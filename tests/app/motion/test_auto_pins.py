@@ -17,8 +17,9 @@ from app.document import (
     pinned_handles,
 )
 from app.motion import Animation, DeformMesh, InbetweenCache, ParentTransforms
-from app.motion.inbetweens import pose_sampler
+from app.motion.inbetweens import animation, pose_sampler
 from app.motion.inbetweens.content_cache import ContentCache
+from app.motion.inbetweens.frame_corrector import FrameCorrector
 from app.motion.inbetweens.segment_keys import segment_key
 from engine.interpolation import BLENDS
 
@@ -243,3 +244,24 @@ def test_single_frame_has_the_pins_of_its_segment():
     whole = store.segment(clip, 0).inbetweens
     assert np.abs(whole.frame(single.weight).positions - single.positions).max() < 0.02
     assert whole.corrections
+
+
+def test_motion_at_other_points_shares_the_corrections_of_a_layer(monkeypatch):
+    free = posed().layers[0].handles[-1]
+    spring = Spring(handle=free.id, frequency=2, damping=0.3)
+    document = with_layer(posed(), springs=(spring,))
+    made = []
+
+    class Counted(FrameCorrector):
+        def __init__(self, *given):
+            made.append(given)
+            super().__init__(*given)
+
+    monkeypatch.setattr(animation, "FrameCorrector", Counted)
+    layer = document.layers[0]
+    joints, points = ParentTransforms(document), np.array([h.position for h in layer.handles])
+    together = joints.animation(layer.id, points).frame(5.5)
+    alone = [joints.animation(layer.id, points[i : i + 1]).frame(5.5) for i in range(len(points))]
+    assert len(made) == 1
+    assert_allclose([each.positions[0] for each in alone], together.positions, atol=1e-9)
+    assert_allclose([each.fz[0] for each in alone], together.fz, atol=1e-6)
