@@ -237,6 +237,29 @@ def test_a_tail_that_leans_on_the_ground_is_no_leg_though_lines_part_it():
     assert with_tracked_legs(joints, find_kind("biped-side"), legs, 1) == joints
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_hips_in_a_near_thigh_move_into_the_trunk_beside_it(way):
+    def turned(*places):
+        return [way * at.real + 1j * at.imag for at in map(complex, places)]
+
+    # A dog in mid-step: the silhouette shows the fork of its legs within the near thigh.
+    legs = [
+        TrackedLeg(*turned(*leg))
+        for leg in (
+            (280 + 458j, 251 + 266j, 168 + 92j),
+            (328 + 312j, 359 + 196j, 334 + 78j),
+            (646 + 302j, 622 + 200j, 586 + 102j),
+            (691 + 404j, 726 + 241j, 754 + 78j),
+        )[::way]
+    ]
+    hips, chest, neck = turned(302 + 326j, 661 + 420j, 760 + 498j)
+    joints = {"hips": hips, "chest": chest, "neck": neck}
+    found = with_tracked_legs(joints, find_kind("four-legs"), legs, way)
+    assert found["hips"].imag == 458
+    assert 350 < way * found["hips"].real < 400
+    assert found["chest"] == chest, "above the root of its leg"
+
+
 def test_two_legs_in_one_branch_of_the_silhouette_are_no_tail_but_the_legs():
     legs = [TrackedLeg(at + 270j, at + 180j, at + 100j) for at in (340.0, 385.0)]
     joints = {"hips": 362 + 364j, "tail.1": 362 + 219j, "tail.2": 361 + 117j, "tail": 300 + 70j}

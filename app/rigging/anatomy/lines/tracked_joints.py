@@ -15,6 +15,9 @@ FRONT_LEG = ("shoulder", "elbow", "hand")
 LONG_TAIL, IN_TAIL = 0.6, 0.1
 # Of a leg's length: how far below its root two legs seem a tail, whose tip is so near to a foot.
 LOW_TAIL, FOOT = 0.15, 0.6
+# Of a leg's length: a joint of the trunk so near to the upper leg, so far below its root, is in the
+# leg; it moves so far aside.
+IN_LEG, BELOW_ROOT, BESIDE_LEG = 0.15, 0.05, 0.25
 PELVIS = 0.22  # of a leg's length: height of the hips above the roots of both legs
 
 
@@ -30,7 +33,10 @@ def with_tracked_legs(
         if not pairs:
             return dict(joints)
         hind, front = pairs if facing > 0 else pairs[::-1]
-        return _placed(joints, {LEG: hind, FRONT_LEG: front}, facing)
+        found = _placed(joints, {LEG: hind, FRONT_LEG: front}, facing)
+        found["hips"] = _beside_legs(joints["hips"], hind, joints["chest"])
+        found["chest"] = _beside_legs(joints["chest"], front, joints["hips"])
+        return found
     if kind.is_side_view:
         joints = _without_low_tail(joints, legs)
     legs = [leg for leg in legs if not _is_tail(leg, joints)]
@@ -44,6 +50,17 @@ def with_tracked_legs(
         long = float(np.mean([abs(leg.root - leg.foot) for leg in legs]))
         found["hips"] = sum(roots) / len(roots) + 1j * PELVIS * long
     return found
+
+
+def _beside_legs(place: complex, pair: Sequence[TrackedLeg], towards: complex) -> complex:
+    """Return the place of a joint of the trunk, moved out of the upper leg that it lies in."""
+    leg = max(pair, key=lambda each: each.root.imag)
+    long = abs(leg.root - leg.foot)
+    ends = np.array([leg.root]), np.array([leg.knee])
+    away = float(distance_to_segments(np.array([place]), *ends).min())
+    if away > IN_LEG * long or leg.root.imag - place.imag < BELOW_ROOT * long:
+        return place
+    return leg.root + BESIDE_LEG * long * float(np.sign((towards - leg.root).real))
 
 
 def _without_low_tail(
