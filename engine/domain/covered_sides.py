@@ -7,7 +7,7 @@ import shapely
 from scipy import ndimage
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
-from engine.geometry import arc_lengths, as_xy
+from engine.geometry import arc_lengths, as_xy, diameter
 
 BESIDE = 3.0  # slit widths: a vertex on a side of a slit is this near to its line
 SPACING, ROUNDING = 2.0, 3.0  # slit widths between samples of a line, samples of its rounding
@@ -59,10 +59,9 @@ def are_tips(region: shapely.Polygon, line: Complexes, ahead: float) -> Booleans
     return np.asarray(is_free & shapely.contains(region, ends), np.bool_)
 
 
-def find_room(
-    region: shapely.Polygon, places: Complexes, directions: Complexes, most: float
-) -> Floats:
+def find_room(region: shapely.Polygon, places: Complexes, directions: Complexes) -> Floats:
     """Return how far rays run inside a region from places (n,)."""
+    most = diameter(np.asarray(shapely.get_coordinates(region) @ [1, 1j]))
     ends = places + most * directions
     rays = shapely.linestrings(np.stack([as_xy(places), as_xy(ends)], axis=1))
     room = np.full(len(places), most)

@@ -27,7 +27,6 @@ from engine.geometry import (
     as_xy,
     barycentric_weights,
     box_diagonal,
-    diameter,
     shapely_region,
 )
 
@@ -101,15 +100,12 @@ def find_underlay(
     region = shapely_region(domain.outline, domain.loops[1:])
     border = border_edges(mesh.triangles).astype(np.intp)
     border = border[np.isin(border, sides).all(axis=1)]
-    around = [are_tips(region, line, TIP * width).all() for line in lines]
-    limbs = [each for each, is_flap in zip(lines, around, strict=True) if not is_flap]
+    ended = [(line, are_tips(region, line, TIP * width)) for line in lines]
+    limbs = [(line, are_ends) for line, are_ends in ended if not are_ends.all()]
+    flaps = [line for line, are_ends in ended if are_ends.all()]
     parts = [
         _under_limbs(mesh, region, border, limbs, width),
-        *(
-            _under_flap(mesh, region, border, line, width)
-            for line, is_flap in zip(lines, around, strict=True)
-            if is_flap
-        ),
+        *(_under_flap(mesh, region, border, line, width) for line in flaps),
     ]
     return _joined([part for part in parts if part is not None], len(mesh.vertices))
 
@@ -138,8 +134,7 @@ def _under_flap(
     found, first, inverse = np.unique(edges, return_index=True, return_inverse=True)
     edges, chosen = inverse.reshape(-1, 2), chosen[first]
     inwards = -1j * samples.tangents
-    most = diameter(np.asarray(shapely.get_coordinates(region) @ [1, 1j]))
-    seen = find_room(region, samples.way - BESIDE_SLIT * width * inwards, -inwards, most)
+    seen = find_room(region, samples.way - BESIDE_SLIT * width * inwards, -inwards)
     # The outline of the trunk is not painted under the flap.
     seen = np.maximum(seen - BAND * width, 0.0)
     flap = measure_flap(samples.way, inwards, seen)
@@ -175,15 +170,19 @@ def _under_flap(
 
 
 def _under_limbs(
-    mesh: Mesh, region: shapely.Polygon, border: Indices, lines: Sequence[Complexes], width: float
+    mesh: Mesh,
+    region: shapely.Polygon,
+    border: Indices,
+    lines: Sequence[tuple[Complexes, Booleans]],
+    width: float,
 ) -> Underlay | None:
-    """Return what continues under limbs."""
+    """Return what continues under limbs, for lines and whether each end of them is a tip."""
     covered = [np.empty((0, 2), dtype=np.intp)]
     outwards = np.zeros(len(mesh.vertices), dtype=np.complex128)
     along = np.zeros(len(mesh.vertices))
     limits = np.zeros(len(mesh.vertices))
     wide = np.zeros(len(mesh.vertices))
-    for line in lines:
+    for line, is_tip in lines:
         samples = sample_line(line, width)
         on_side, chosen = find_covered_side(mesh.vertices, border, samples, width)
         covered.append(on_side)
@@ -192,7 +191,6 @@ def _under_limbs(
         along[side] = at
         # At a tip both sides are one. Elsewhere, the outline of the covered limb goes under the
         # other limb, which covers that outline's ink first.
-        is_tip = are_tips(region, line, TIP * width)
         first, last = np.where(is_tip, 0.0, INK * width)
         limits[side] = np.minimum(first + TAPER * at, last + TAPER * (way - at))
         wide[side] = np.interp(at / way, [0.0, 1.0], np.where(is_tip, *TRUNK))
@@ -203,9 +201,8 @@ def _under_limbs(
     edges = inverse.reshape(-1, 2)
     outwards, along = outwards[found], along[found]
     places = mesh.vertices[found]
-    most = diameter(np.asarray(shapely.get_coordinates(region) @ [1, 1j]))
-    seen = find_room(region, places - width * outwards / 2, -outwards, most)
-    covering = find_room(region, places + 2.5 * width * outwards, outwards, most)
+    seen = find_room(region, places - width * outwards / 2, -outwards)
+    covering = find_room(region, places + 2.5 * width * outwards, outwards)
     is_trunk = seen > wide[found] * covering
     hidden = np.where(is_trunk, 0.0, np.maximum(covering - seen, 0.0))
     rounding = _rounding(edges, along, STEADY * width)

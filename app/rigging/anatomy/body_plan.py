@@ -53,7 +53,7 @@ class BodyPlan:
         standing = {int(leg.path[-1]) for leg in self.legs}
         self.others = [end for end in ends if end not in standing]
 
-    @property
+    @cached_property
     def is_mirrored(self) -> bool:
         """Whether the shape is upright and its own mirror image, as bodies from the front are."""
         return self.tall > self.wide and self._symmetry_about(self.middle) >= SYMMETRIC

@@ -67,9 +67,11 @@ def guess_joints(layer: Layer, kind: str, rgba: Bytes | None) -> JointGuess:
         facing = guess_facing(body, joints, loops[0])
         found = guess_near_limbs(loops, joints, rgba, layer.corner)
         joints = name_near_limbs(joints, found, facing)
-        shown = texture(rgba, subject_mask(rgba, layer.cut_out))
-        arm = find_near_arm(loops, joints, facing, shown, layer.corner)
-        if body.name == "biped-side" and arm is not None:
+        arm = None
+        if body.name == "biped-side":
+            shown = texture(rgba, subject_mask(rgba, layer.cut_out))
+            arm = find_near_arm(loops, joints, facing, shown, layer.corner)
+        if arm is not None:
             joints = with_near_arm(joints, arm, facing)
             joints = move_off_arm(joints, arm, loops, near_side(facing))
             found = tuple(limb for limb in found if not limb.near.startswith("hand"))

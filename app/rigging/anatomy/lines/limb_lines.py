@@ -111,8 +111,8 @@ def find_limb_line(
     seen: Booleans = strips.evidence[rows, offsets] >= SEEN
     crotch = int(rows[is_open & (rows < root)].max(initial=int(touching[0])))
     is_behind = may_be_behind and _goes_on_as_far(offsets, gaps, crotch, round(GOES_ON * samples))
-    usual = _usual_width(strips, offsets, gaps)
-    beside = _move_beyond_ink(strips, offsets, gaps, usual, is_behind=is_behind)
+    ink = _measure_line(strips, offsets, gaps)
+    beside = _move_beyond_ink(ink, is_behind=is_behind)
     steady = ndimage.median_filter(beside, 5, mode="nearest")
     # Around the toes the line leads straight on to the ground, and not back under the sole.
     steady[: ankle + 1] = np.maximum.accumulate(steady[ankle::-1])[::-1]
@@ -135,7 +135,7 @@ def find_limb_line(
     is_left = (strips.across[first] / (strips.axis[first + 1] - strips.axis[first])).imag > 0
     low = strips.place(rows[first:instep], smooth)
     if not may_be_behind:
-        toes = lead_round_toes(strips, instep, float(smooth[instep]), usual)
+        toes = lead_round_toes(strips, instep, float(smooth[instep]), ink.usual)
         low = toes if len(toes) else low
     points = np.concatenate([low, strips.place(rows[max(first, instep) : last + 1], smooth)])
     branch = strips.place(rows[crotch : crotch + 1], smooth)
@@ -228,25 +228,19 @@ def _goes_on_as_far(offsets: Indices, gaps: Booleans, crotch: int, count: int) -
     return abs(slope - slopes[1]) < abs(slope - slopes[0])
 
 
-def _usual_width(strips: Strips, offsets: Indices, gaps: Booleans) -> float:
-    """Return the most that a line is wide, in samples, from its width across most strips."""
-    is_ink = strips.ink >= SEEN
-    widths = []
-    for row in np.flatnonzero(~gaps.any(axis=1) & is_ink[np.arange(len(offsets)), offsets]):
-        light = np.flatnonzero(~is_ink[row])
-        before, after = light[light < offsets[row]], light[light > offsets[row]]
-        widths.append(after.min(initial=is_ink.shape[1] - 1) - before.max(initial=0))
-    return THICK * float(np.median(widths)) if widths else 0.0
+class _LineEnds(NamedTuple):
+    """Where the ink of a line begins and ends in each row, and the most that it usually is wide.
 
-
-def _move_beyond_ink(
-    strips: Strips, offsets: Indices, gaps: Booleans, usual: float, *, is_behind: bool
-) -> Floats:
-    """Return the offsets moved beyond the ink of the limb in front, and to the middle of gaps.
-
-    Near the crotch, where the outlines of both limbs are one line, only the usual width of a line
-    is that limb's. `is_behind` says that the far limb is in front.
+    Beside a line of no ink, both are where the light begins; in gaps, their middle.
     """
+
+    starts: Floats
+    stops: Floats
+    is_line: Booleans
+    usual: float
+
+
+def _measure_line(strips: Strips, offsets: Indices, gaps: Booleans) -> _LineEnds:
     is_ink, width = strips.ink >= SEEN, strips.ink.shape[1]
     ends = np.stack([offsets, offsets]).astype(np.float64)
     for row, offset in enumerate(offsets.tolist()):
@@ -259,6 +253,17 @@ def _move_beyond_ink(
             ends[1, row] = light[light > offset].min(initial=width - 1)
     starts, stops = ends
     is_line = ~gaps.any(axis=1) & is_ink[np.arange(len(offsets)), offsets]
+    usual = THICK * float(np.median((stops - starts)[is_line])) if is_line.any() else 0.0
+    return _LineEnds(starts, stops, is_line, usual)
+
+
+def _move_beyond_ink(line: _LineEnds, *, is_behind: bool) -> Floats:
+    """Return the offsets moved beyond the ink of the limb in front, and to the middle of gaps.
+
+    Near the crotch, where the outlines of both limbs are one line, only the usual width of a line
+    is that limb's. `is_behind` says that the far limb is in front.
+    """
+    starts, stops, is_line, usual = line
     moved = np.maximum(starts, stops - usual) if is_behind else np.minimum(stops, starts + usual)
     moved[~is_line] = (starts if is_behind else stops)[~is_line]
     return np.asarray(moved, np.float64)

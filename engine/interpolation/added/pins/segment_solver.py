@@ -100,12 +100,13 @@ class SegmentSolver:
             return found
         checked, shares = [self._checked(time)], np.ones((1, 1))
         for solve in (self.solve, self._solve_walled):
-            if solve(time).is_finished:
-                node = self._node(time, solve(time))
-                (found,), is_kept = keep_limits(self._corrector, [node], checked, shares)
+            found = solve(time)
+            if found.is_finished:
+                node = self._node(time, found)
+                (kept,), is_kept = keep_limits(self._corrector, [node], checked, shares)
                 if is_kept:
-                    return found
-        return self._solve_walled(time)
+                    return kept
+        return found
 
     def solve_series_within_limits(self) -> tuple[dict[float, PointSolution], bool]:
         """Find corrections at Chebyshev nodes whose series keeps the limits between them, too.
